@@ -1,0 +1,1 @@
+"""Imaging: from high-speed video to surface motion, and back with a synthetic camera."""
