@@ -1,0 +1,173 @@
+"""The case: everything that a simulation needs to know, as typed, frozen sections with SI floats."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, model_validator
+
+from wrinklewave.config.defaults import fill_defaults
+from wrinklewave.config.drives import Drive
+from wrinklewave.config.fields import (
+    Count,
+    Frequency,
+    NotNegative,
+    NotNegativeLength,
+    NotNegativeTime,
+    Positive,
+    PositiveLength,
+    PositiveTime,
+    Section,
+    Strain,
+    Window,
+)
+from wrinklewave.config.solids import Film, Substrate
+
+WrinkleModel = Literal["none", "quasi-static", "rate-dependent", "resolved"]
+Grading = Annotated[float, Field(ge=0.01, le=100)]
+
+
+class About(Section):
+    """Who this case is."""
+
+    name: Annotated[str, Field(min_length=1, description="short name, used in titles")]
+    description: str = ""
+
+
+class Block(Section):
+    """The undeformed rectangular block, 0 <= x <= length; y = 0 at mid-height, the film's side up."""
+
+    length: Annotated[PositiveLength, Field(description="L_0, along the film")]
+    height: Annotated[PositiveLength, Field(description="full height H")]
+    symmetry: Annotated[bool, Field(description="mesh the upper half only, u_y = 0 at mid-height")] = True
+
+    @property
+    def meshed_height(self) -> float:
+        """Height of the meshed part [m]: H/2 with symmetry, else H."""
+        return self.height / 2 if self.symmetry else self.height
+
+
+class Wrinkles(Section):
+    """Which model makes the wrinkles, and over which depth it averages the strain."""
+
+    model: WrinkleModel
+    averaging_depth: Annotated[PositiveLength, Field(description="D, in the undeformed state")]
+
+
+class Hourglass(Section):
+    """Control of the modes that one-point integration does not see."""
+
+    stiffness: Annotated[NotNegative, Field(description="relative to the fully integrated element's")] = 1.0
+
+
+class Mesh(Section):
+    """A structured mesh of quadrilaterals."""
+
+    elements: Annotated[tuple[Count, Count], Field(description="along x, and through the meshed height")]
+    element: Annotated[
+        Literal["one-point", "mean-dilatation"], Field(description="kind of quadrilateral")
+    ] = "one-point"
+    grading: Annotated[
+        tuple[Grading, Grading], Field(description="ratio of last to first element size along x and y")
+    ] = (1.0, 1.0)
+    hourglass: Hourglass = Hourglass()
+
+
+class Boundaries(Section):
+    """What holds the block, the struck end apart."""
+
+    right: Annotated[Literal["fixed", "roller", "free"], Field(description="the end x = L_0")] = "fixed"
+    top: Annotated[Literal["free", "roller"], Field(description="the surface")] = "free"
+    wall: Annotated[bool, Field(description="rigid plate at x = L_0 that the surface may not cross")] = True
+
+
+class Solver(Section):
+    """Time integration."""
+
+    end_time: Annotated[PositiveTime, Field(description="simulated time")]
+    safety: Annotated[float, Field(gt=0, le=1, description="fraction of the stable step")] = 0.9
+    bulk_viscosity: Annotated[
+        tuple[NotNegative, NotNegative], Field(description="linear and quadratic coefficient")
+    ] = (0.06, 1.2)
+    precision: Literal["float64", "float32"] = "float64"
+    checkpoint_interval: Annotated[PositiveTime, Field(description="wall-clock time between checkpoints")] = (
+        60.0
+    )
+    mass_scaling: Annotated[float, Field(ge=1, description="factor on the mass, quasi-static runs only")] = (
+        1.0
+    )
+
+
+class Output(Section):
+    """What is written, and how often (simulated time)."""
+
+    surface_interval: PositiveTime
+    field_interval: PositiveTime
+    history_interval: PositiveTime
+    probes: Annotated[tuple[NotNegativeLength, ...], Field(description="undeformed x of surface points")] = ()
+    pixel_size: Annotated[PositiveLength, Field(description="laboratory grid of the surface motion")]
+
+
+class Analysis(Section):
+    """Parameters of the analysis, those of the paper by name."""
+
+    front_fraction: Annotated[
+        Strain, Field(description="the wavefront is where U_y reaches this fraction of its maximum")
+    ] = 0.1
+    front_window: Annotated[Window, Field(description="x over which speeds are fitted")]
+    wrinkle_threshold: Annotated[PositiveLength, Field(description="amplitude at which wrinkles are there")]
+    filter_wavelength: Annotated[PositiveLength, Field(description="cutoff between wrinkles and pulse")]
+    amplitude_window: Annotated[Window, Field(description="x over which amplitude and wavelength are taken")]
+    positions: Annotated[tuple[NotNegativeLength, ...], Field(description="for displacement against time")]
+    times: Annotated[tuple[NotNegativeTime, ...], Field(description="for displacement against position")]
+    loss_frequency: Annotated[
+        Frequency | None, Field(description="for storage and loss modulus in the theory")
+    ] = None
+
+
+class Case(Section):
+    """A whole case file. Made by :func:`load_case` and :func:`case_from_text`, which also check it as a whole."""
+
+    case: About
+    block: Block
+    substrate: Substrate
+    film: Film | None = None
+    wrinkles: Wrinkles
+    mesh: Mesh
+    drive: Drive
+    boundaries: Boundaries = Boundaries()
+    solver: Solver
+    output: Output
+    analysis: Analysis
+
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_defaults(cls, data: Any) -> Any:
+        return fill_defaults(data) if isinstance(data, dict) else data
+
+    @property
+    def name(self) -> str:
+        """Short name of the case."""
+        return self.case.name
+
+    def to_toml(self) -> str:
+        """Return the resolved case as a case file in SI units; reading it gives an equal case."""
+        from wrinklewave.config.writing import toml_text
+
+        return toml_text(self.model_dump(mode="json", exclude_none=True))
+
+    def overridden(self, *overrides: str) -> Self:
+        """Return a checked copy with values replaced, as in ``case.overridden("drive.velocity=5 m/s")``.
+
+        Raises:
+            InputError: as :func:`load_case`.
+        """
+        from wrinklewave.config.reading import case_from_text
+
+        return case_from_text(self.to_toml(), overrides=overrides, source=self.name)  # type: ignore[return-value]
+
+
+def sections() -> Sequence[str]:
+    """Names of the tables of a case file."""
+    return tuple(Case.model_fields)

@@ -1,0 +1,72 @@
+"""``--set key=value``: replace values of a case file before it is checked."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from collections.abc import Sequence
+from typing import Any
+
+from wrinklewave.errors import InputError
+
+
+def apply_overrides(data: dict[str, Any], overrides: Sequence[str]) -> tuple[dict[str, Any], tuple[str, ...]]:
+    """Return a copy of ``data`` with the overrides in it, and their dotted keys.
+
+    Args:
+        data: nested tables as read from TOML.
+        overrides: ``section.key=value``; values are TOML, or else plain text (``drive.velocity=5 m/s``); numbers in
+            the key count the entries of a list from 0 (``substrate.prony.0.relaxation_time=60 us``).
+
+    Raises:
+        InputError: if an override is not of that form, or its key leads nowhere.
+    """
+    changed = copy.deepcopy(data)
+    keys = []
+    for override in overrides:
+        key, equals, text = override.partition("=")
+        key = key.strip()
+        if not equals or not all(key.split(".")):
+            raise InputError(
+                f"{override!r} is no override",
+                file="--set",
+                expected="section.key=value",
+                cure='write, for instance, --set "drive.velocity=5 m/s"',
+            )
+        _set(changed, key, _value(text.strip()))
+        keys.append(key)
+    return changed, tuple(keys)
+
+
+def _value(text: str) -> Any:
+    """The TOML value that ``text`` is, or else the text itself."""
+    try:
+        parsed = tomllib.loads(f"value = {text}")
+    except tomllib.TOMLDecodeError:
+        return text
+    return parsed["value"] if len(parsed) == 1 else text
+
+
+def _set(data: dict[str, Any], key: str, value: Any) -> None:
+    *parents, last = key.split(".")
+    table: Any = data
+    for part in parents:
+        table = table.setdefault(part, {}) if isinstance(table, dict) else _entry(table, part, key)
+    if isinstance(table, dict):
+        table[last] = value
+    else:
+        _entry(table, last, key)
+        table[int(last)] = value
+
+
+def _entry(parent: Any, part: str, key: str) -> Any:
+    if not isinstance(parent, list):
+        raise InputError(f"{part!r} is inside a single value", file="--set", key=key, cure="check the key")
+    if not part.isdecimal() or int(part) >= len(parent):
+        raise InputError(
+            f"no entry {part!r} in this list",
+            file="--set",
+            key=key,
+            expected=f"a number from 0 to {len(parent) - 1}" if parent else "a list that is not empty",
+        )
+    return parent[int(part)]
