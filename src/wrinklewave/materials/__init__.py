@@ -1,0 +1,1 @@
+"""Materials: constitutive laws and their moduli."""
