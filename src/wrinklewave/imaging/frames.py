@@ -1,15 +1,15 @@
 """Recordings as frame sources: one interface to every kind of file, one frame in memory at a time.
 
 A frame source keeps what the camera recorded: the grey values as they are, their bit depth, the black and the
-white level, and the clock. ``clock`` says what ``times`` and ``frame_rate`` are worth: ``"camera"`` means that the
-file holds the times of exposure, ``"playback"`` that it only says how fast to show the frames (AVI, MP4 and MOV
-files of high-speed cameras), ``None`` that it says nothing.
+white level, and the clock. ``clock`` says what ``times`` and ``frame_rate`` are worth: ``"camera"`` means
+that the file holds the times of exposure, ``"playback"`` that it only says how fast to show the frames (AVI,
+MP4 and MOV files of high-speed cameras), ``None`` that it says nothing.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Literal, Self
@@ -23,7 +23,8 @@ Image = NDArray[np.uint8] | NDArray[np.uint16]
 Clock = Literal["camera", "playback"] | None
 
 IMAGE_ENDINGS = (".png", ".tif", ".tiff")
-VIDEO_ENDINGS = (".avi", ".mp4", ".mov", ".mkv", ".m4v")
+TIFF_MAGIC = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")
+CINE_MAGIC = b"CI\x2c\0"
 
 
 class FrameError(RunError):
@@ -47,6 +48,10 @@ class FrameSource(ABC):
         frame_rate: frames per second, or None when unknown.
         clock: what ``times`` and ``frame_rate`` mean: "camera", "playback" or None.
         description: what kind of file this is, for people.
+        notes: what a user should know before trusting the numbers, one sentence each.
+        path: where it lies, or None.
+
+    A source reads from one open file: use it from one thread at a time.
     """
 
     n_frames: int
@@ -58,6 +63,7 @@ class FrameSource(ABC):
     frame_rate: float | None = None
     clock: Clock = None
     description: str
+    notes: tuple[str, ...] = ()
     path: Path | None = None
 
     def __init__(self) -> None:
@@ -170,23 +176,15 @@ def open_recording(path: str | Path) -> FrameSource:
     Raises:
         InputError: if there is nothing there, or nothing that can be read as a recording.
     """
-    target = Path(path)
-    if target.is_dir():
-        from wrinklewave.imaging.sources.folder import FolderSource
-
-        return FolderSource(target)
-    magic = _first_bytes(target)
-    if magic[:4] in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"):
-        from wrinklewave.imaging.sources.tiff import TiffSource
-
-        return TiffSource(target)
-    if magic[:2] == b"CI" and target.suffix.lower() not in VIDEO_ENDINGS:
-        from wrinklewave.imaging.sources.cine import CineSource
-
-        return CineSource(target)
-    from wrinklewave.imaging.sources.video import VideoSource
-
-    return VideoSource(target)
+    source = _reader(Path(path))(Path(path))
+    if len(source.unreadable) == source.n_frames:
+        source.close()
+        raise InputError(
+            f"none of its {source.n_frames} frames can be read; the first: {source.unreadable[0][1]}",
+            file=path,
+            cure="copy or export the recording again",
+        )
+    return source
 
 
 def recording_times(source: FrameSource, frame_rate: float | None = None) -> NDArray[np.float64]:
@@ -211,6 +209,25 @@ def recording_times(source: FrameSource, frame_rate: float | None = None) -> NDA
         expected="the camera's frame rate",
         cure='give it in the experiment file: frame_rate = "50000 Hz"',
     )
+
+
+def _reader(path: Path) -> Callable[[Path], FrameSource]:
+    if path.is_dir():
+        from wrinklewave.imaging.sources.folder import FolderSource
+
+        return FolderSource
+    magic = _first_bytes(path)
+    if magic[:4] in TIFF_MAGIC:
+        from wrinklewave.imaging.sources.tiff import TiffSource
+
+        return TiffSource
+    if magic[:4] == CINE_MAGIC:
+        from wrinklewave.imaging.sources.cine import CineSource
+
+        return CineSource
+    from wrinklewave.imaging.sources.video import VideoSource
+
+    return VideoSource
 
 
 def _first_bytes(path: Path) -> bytes:

@@ -1,1 +1,1 @@
-"""Readers of recordings, one file format per module; ``wrinklewave.imaging.frames.open_recording`` chooses."""
+"""Readers of recordings, one file format per module; ``imaging.frames.open_recording`` chooses."""
