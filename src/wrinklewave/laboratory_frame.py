@@ -1,19 +1,21 @@
 """From material points to the laboratory: what a camera that looks along the film sees of a moving surface.
 
-A surface is a curve through its material points, ``x_p(X), y_p(X)``. Seen from the side it is a single-valued height
-``y(x)`` on a fixed grid: where the curve folds over itself, the uppermost branch is what can be seen. Everything that
-turns curves into heights (wrinkling models, the synthetic camera, the maps of material fields) goes through here.
-Lengths in metres; the first axis of every array is time.
+A surface is a curve through its material points, ``x_p(X), y_p(X)``. Seen from the side it is a single-valued
+height ``y(x)`` on a fixed grid: where the curve folds over itself, the uppermost branch is what can be seen.
+Everything that turns curves into heights (wrinkling models, the synthetic camera, the maps of material
+fields) goes through here. Lengths in metres; the first axis of every array is time.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[np.float64]
+Array = NDArray[np.floating[Any]]
 
 
 @dataclass(frozen=True)
@@ -23,8 +25,8 @@ class SurfaceCurve:
     Attributes:
         X: material coordinate [m], shape [n_samples].
         x, y: positions [m], shape [n_times, n_samples].
-        normal_x, normal_y: unit normal that points out of the sample, same shape: (-sin alpha, cos alpha) with
-            alpha the angle of the surface tangent from the x-axis.
+        normal_x, normal_y: unit normal that points out of the sample, same shape: (-sin alpha, cos alpha)
+            with alpha the angle of the surface tangent from the x-axis.
     """
 
     X: Array
@@ -50,7 +52,9 @@ def surface_curve(X: ArrayLike, x_p: ArrayLike, y_p: ArrayLike, *, spacing: floa
     x_spline, y_spline = (CubicSpline(X, np.asarray(p, dtype=float), axis=1) for p in (x_p, y_p))
     x_tangent, y_tangent = x_spline(samples, 1), y_spline(samples, 1)
     length = np.hypot(x_tangent, y_tangent)
-    return SurfaceCurve(samples, x_spline(samples), y_spline(samples), -y_tangent / length, x_tangent / length)
+    return SurfaceCurve(
+        samples, x_spline(samples), y_spline(samples), -y_tangent / length, x_tangent / length
+    )
 
 
 def visible_height(x_curve: ArrayLike, y_curve: ArrayLike, x: ArrayLike, x_boundary: ArrayLike) -> Array:
@@ -66,7 +70,9 @@ def visible_height(x_curve: ArrayLike, y_curve: ArrayLike, x: ArrayLike, x_bound
     """
     x_curve, y_curve = np.asarray(x_curve, dtype=float), np.asarray(y_curve, dtype=float)
     x = np.asarray(x, dtype=float)
-    height = np.stack([_uppermost(x_row, y_row, y_row, x) for x_row, y_row in zip(x_curve, y_curve, strict=True)])
+    height = np.stack(
+        [_uppermost(x_row, y_row, y_row, x) for x_row, y_row in zip(x_curve, y_curve, strict=True)]
+    )
     return _without_struck_side(height, x, x_boundary)
 
 
@@ -143,7 +149,7 @@ def _branches(steps: Array) -> list[slice]:
     """Stretches of the curve along which x keeps its sense."""
     turns = np.flatnonzero(np.diff(np.sign(steps)) != 0) + 1
     bounds = [0, *turns.tolist(), steps.size]
-    return [slice(start, stop + 1) for start, stop in zip(bounds[:-1], bounds[1:], strict=True)]
+    return [slice(start, stop + 1) for start, stop in pairwise(bounds)]
 
 
 def _interpolate(x: Array, x_branch: Array, values: Array) -> Array:

@@ -1,7 +1,7 @@
-"""How a film wrinkles on a substrate that is stiffer the faster it is strained (Fig. S4 of "Wrinkles Riding Waves").
+"""Films on a substrate that is the stiffer the faster it is strained (Fig. S4 of "Wrinkles Riding Waves").
 
-The substrate's momentary modulus is estimated as the ratio of depth-averaged nominal stress and strain, and put into
-eps_c = (3 E_s / E_f)^(2/3) / 4: the critical strain grows with E_s^(2/3).
+The substrate's momentary modulus is estimated as the ratio of depth-averaged nominal stress and strain, and
+put into eps_c = (3 E_s / E_f)^(2/3) / 4: the critical strain grows with E_s^(2/3).
 """
 
 from __future__ import annotations
@@ -26,11 +26,14 @@ def instantaneous_modulus(stress: ArrayLike, strain: ArrayLike, *, smallest_stra
     return modulus
 
 
-def instantaneous_critical_strain(modulus: ArrayLike, *, critical_strain: float, long_term_modulus: float) -> Array:
+def instantaneous_critical_strain(
+    modulus: ArrayLike, *, critical_strain: float, long_term_modulus: float
+) -> Array:
     """Critical strain of the film on a substrate of momentary modulus ``modulus`` [Pa].
 
     Args:
-        modulus: from ``instantaneous_modulus``; a negative one (stress and strain of opposite sign) gives NaN.
+        modulus: from ``instantaneous_modulus``; a negative one (stress and strain of opposite sign) gives
+            NaN.
         critical_strain: measured quasi-statically, where the substrate has its long-term modulus.
         long_term_modulus: of the same kind as ``modulus``: in plane strain E_0 / (1 - nu^2) [Pa].
     """

@@ -3,8 +3,8 @@
     x(X, t) = x_p(X, t) - A(X, t) cos(2 pi X / lambda_c) sin alpha(X, t)
     y(X, t) = y_p(X, t) + A(X, t) cos(2 pi X / lambda_c) cos alpha(X, t)
 
-with X the undeformed position, alpha the angle of the surface tangent from the x-axis. The phase is tied to the
-material, largest at the struck end X = 0. The amplitude A comes from any wrinkling model.
+with X the undeformed position, alpha the angle of the surface tangent from the x-axis. The phase is tied to
+the material, largest at the struck end X = 0. The amplitude A comes from any wrinkling model.
 """
 
 from __future__ import annotations
@@ -56,8 +56,10 @@ def wrinkled_surface(
     )
 
 
-def smooth_surface(X: ArrayLike, x_p: ArrayLike, y_p: ArrayLike, *, x: ArrayLike, x_boundary: ArrayLike) -> Array:
-    """What a camera sees of a moving surface without wrinkles; arguments and result as in ``wrinkled_surface``."""
+def smooth_surface(
+    X: ArrayLike, x_p: ArrayLike, y_p: ArrayLike, *, x: ArrayLike, x_boundary: ArrayLike
+) -> Array:
+    """What a camera sees of a moving surface without wrinkles; arguments as in ``wrinkled_surface``."""
     x = np.asarray(x, dtype=float)
     curve = surface_curve(X, x_p, y_p, spacing=float(np.diff(x).min()))
     return visible_height(curve.x, curve.y, x, x_boundary)
@@ -79,8 +81,8 @@ def wrinkled_curve(
     """
     from scipy.interpolate import PchipInterpolator  # keeps amplitudes >= 0, without overshoot at the onset
 
-    fine_amplitude = PchipInterpolator(np.asarray(X, dtype=float), np.asarray(amplitude, dtype=float), axis=1)(
-        curve.X
-    )
+    fine_amplitude = PchipInterpolator(
+        np.asarray(X, dtype=float), np.asarray(amplitude, dtype=float), axis=1
+    )(curve.X)
     wrinkle = fine_amplitude * np.cos(2 * np.pi * curve.X / wavelength)
     return curve.x + wrinkle * curve.normal_x, curve.y + wrinkle * curve.normal_y
