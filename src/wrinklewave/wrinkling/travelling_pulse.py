@@ -63,8 +63,10 @@ class TravellingPulse:
         y_p = self.half_height + self.height * smooth_step(delay / self.rise_time)
         wrinkle_delay = time[:, None] - x_p / self.wrinkle_speed
         amplitude = self.amplitude * smooth_step(wrinkle_delay / self.wrinkle_rise_time)
-        heights = wrinkled_surface(X, x_p, y_p, amplitude, wavelength=self.wavelength, x=x, x_boundary=x_p[:,
-        0]) strain = np.broadcast_to(travel / self.length, x_p.shape)
+        heights = wrinkled_surface(
+            X, x_p, y_p, amplitude, wavelength=self.wavelength, x=x, x_boundary=x_p[:, 0]
+        )
+        strain = np.broadcast_to(travel / self.length, x_p.shape)
         return surface_motion(
             time=time,
             x=x,
