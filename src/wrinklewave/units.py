@@ -1,7 +1,7 @@
 """Quantities with units, at the border only: ``"10 m/s"`` comes in, 10.0 goes on; inside everything is SI.
 
-The units that case files are full of are in a table, so that reading one does not cost the import of pint; every
-other unit ("inch", "psi", "kg/mm^3") goes to pint. A test holds the table against pint.
+The units that case files are full of are in a table, so that reading one does not cost the import of pint;
+every other unit ("inch", "psi", "kg/mm^3") goes to pint. A test holds the table against pint.
 """
 
 from __future__ import annotations
@@ -63,8 +63,9 @@ COMMON_UNITS: dict[str, tuple[Dimension, str]] = {
     "MHz": (FREQUENCY, "1e6"),
 }
 
-_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*?)\s*")
-_SPELLINGS = str.maketrans({"µ": "u", "μ": "u", "³": "^3", "²": "^2", " ": "", "·": "*"})
+_QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)(?![\d.,_])\s*(.*?)\s*")
+_SPELLINGS = str.maketrans({"µ": "u", "μ": "u", "³": "^3"})
+_BLANKS = re.compile(r"\s*([/^])\s*")
 
 
 class UnitError(ValueError):
@@ -84,18 +85,16 @@ def parse(text: object, dimension: Dimension) -> float:
     if isinstance(text, (int, float)) and not isinstance(text, bool):
         raise UnitError(f"{text} has no unit", f'write it with one, in quotes: "{text} {dimension.si}"')
     if not isinstance(text, str):
-        raise UnitError(
-            f"{text!r} is no quantity", f'write a number and a unit in quotes: "{dimension.example}"'
-        )
+        raise UnitError(f"{text!r} is no quantity", f'write number and unit in quotes: "{dimension.example}"')
     match = _QUANTITY.fullmatch(text)
     if match is None:
-        raise UnitError(f"{text!r} is no quantity", f'write a number and a unit: "{dimension.example}"')
+        raise UnitError(f'"{text}" is no quantity', f'write a number and a unit: "{dimension.example}"')
     number, unit = match.groups()
     if not unit:
-        raise UnitError(f"{text!r} has no unit", f'write "{number} {dimension.si}"')
+        raise UnitError(f'"{text}" has no unit', f'write "{number} {dimension.si}"')
     value = float(Decimal(number) * Decimal(_factor(unit, dimension)))
     if not math.isfinite(value):
-        raise UnitError(f"{text!r} is not finite", f'write a finite number: "{dimension.example}"')
+        raise UnitError(f'"{text}" is not finite', f'write a finite number: "{dimension.example}"')
     return value
 
 
@@ -105,7 +104,7 @@ def format_si(value: float, dimension: Dimension) -> str:
 
 
 def _factor(unit: str, dimension: Dimension) -> str:
-    known = COMMON_UNITS.get(unit.translate(_SPELLINGS))
+    known = COMMON_UNITS.get(_BLANKS.sub(r"\1", unit.translate(_SPELLINGS)))
     if known is None:
         return _factor_by_pint(unit, dimension)
     if known[0] != dimension:
@@ -116,23 +115,21 @@ def _factor(unit: str, dimension: Dimension) -> str:
 def _factor_by_pint(unit: str, dimension: Dimension) -> str:
     registry = _registry()
     try:
-        parsed = registry.Quantity(1.0, registry.parse_units(unit))
-        if not parsed.check(registry.parse_units(dimension.si).dimensionality):
-            raise _wrong_dimension(unit, str(parsed.dimensionality), dimension)
-        return repr(float(parsed.to(dimension.si).magnitude))
-    except UnitError:
-        raise
+        found = registry.Quantity(1.0, registry.parse_units(unit)).to_base_units()
     except Exception as error:  # pint and the tokeniser below it raise a dozen types on text that is no unit
-        raise UnitError(
-            f"{unit!r} is no unit", f'use a unit of {dimension.name}, as in "{dimension.example}"'
-        ) from error
+        raise UnitError(f'"{unit}" is no unit', _use(dimension)) from error
+    # base units rather than dimensions: to pint, radians have none, and 400 rad/s would pass for 400 Hz
+    if found.units != registry.Quantity(1.0, dimension.si).to_base_units().units:
+        raise _wrong_dimension(unit, f"{found.units:~C}" or "pure numbers", dimension)
+    return repr(float(found.magnitude))
 
 
 def _wrong_dimension(unit: str, found: str, dimension: Dimension) -> UnitError:
-    return UnitError(
-        f"{unit!r} is a unit of {found}, not of {dimension.name}",
-        f'use a unit of {dimension.name}, as in "{dimension.example}"',
-    )
+    return UnitError(f'"{unit}" is a unit of {found}, not of {dimension.name}', _use(dimension))
+
+
+def _use(dimension: Dimension) -> str:
+    return f'use a unit of {dimension.name}, as in "{dimension.example}"'
 
 
 @cache

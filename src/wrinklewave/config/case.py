@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -15,7 +14,6 @@ from wrinklewave.config.fields import (
     NotNegative,
     NotNegativeLength,
     NotNegativeTime,
-    Positive,
     PositiveLength,
     PositiveTime,
     Section,
@@ -127,7 +125,7 @@ class Analysis(Section):
 
 
 class Case(Section):
-    """A whole case file. Made by :func:`load_case` and :func:`case_from_text`, which also check it as a whole."""
+    """A whole case file, made by :func:`load_case` and :func:`case_from_text`, which check it as a whole."""
 
     case: About
     block: Block
@@ -157,17 +155,14 @@ class Case(Section):
 
         return toml_text(self.model_dump(mode="json", exclude_none=True))
 
-    def overridden(self, *overrides: str) -> Self:
+    def overridden(self, *overrides: str) -> Case:
         """Return a checked copy with values replaced, as in ``case.overridden("drive.velocity=5 m/s")``.
+
+        Values that were derived when the case was read, such as windows in proportion to the block, stay.
 
         Raises:
             InputError: as :func:`load_case`.
         """
         from wrinklewave.config.reading import case_from_text
 
-        return case_from_text(self.to_toml(), overrides=overrides, source=self.name)  # type: ignore[return-value]
-
-
-def sections() -> Sequence[str]:
-    """Names of the tables of a case file."""
-    return tuple(Case.model_fields)
+        return case_from_text(self.to_toml(), overrides=overrides, source=self.name)

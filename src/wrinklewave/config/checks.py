@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from wrinklewave.config.drives import (
@@ -12,208 +13,179 @@ from wrinklewave.config.drives import (
     StrikerDrive,
     VelocityStepDrive,
 )
-from wrinklewave.config.history import read_history
+from wrinklewave.config.history import read_history, read_profile
+from wrinklewave.config.imperfections import (
+    BumpImperfection,
+    ProfileImperfection,
+    RandomImperfection,
+)
 from wrinklewave.errors import InputError
 
 if TYPE_CHECKING:
     from wrinklewave.config.case import Case
+    from wrinklewave.config.solids import Film
+
+ROUNDING = 1e-9  # relative; times and places that are computed may miss their limit by rounding
 
 
 def case_errors(case: Case) -> Iterator[InputError]:
     """Yield an error for everything in ``case`` that does not fit together."""
-    yield from _film(case)
+    if case.film is not None:
+        yield from _film(case, case.film)
     yield from _wrinkles(case)
+    yield from _averaging_depth(case)
     yield from _drive(case)
     yield from _times(case)
     yield from _places(case)
-    yield from _solver(case)
+    if case.solver.mass_scaling > 1 and not isinstance(case.drive, CompressionDrive):
+        problem = f"{case.solver.mass_scaling:g} in a dynamic run would change the wave speeds"
+        yield _error("solver.mass_scaling", problem, '1, unless drive.kind = "compression"', "remove it")
 
 
-def _film(case: Case) -> Iterator[InputError]:
-    if case.film is None:
-        return
-    if case.film.thickness >= case.block.height:
-        yield _error(
-            "film.thickness",
-            f"{_mm(case.film.thickness)}, but the block is {_mm(case.block.height)} high",
-            "a film thinner than the block",
-            "check the units: films are given in um",
-        )
-    if case.film.end_gap >= case.block.length:
-        yield _error(
-            "film.end_gap", f"{_mm(case.film.end_gap)} leaves no film", _inside(case), "make it smaller"
-        )
+def _film(case: Case, film: Film) -> Iterator[InputError]:
+    length, height = case.block.length, case.block.height
+    if film.thickness >= height:
+        problem = f"{_mm(film.thickness)}, but the block is {_mm(height)} high"
+        yield _error("film.thickness", problem, "a film thinner than the block", "check its unit, such as um")
+    if film.end_gap >= length:
+        yield _error("film.end_gap", f"{_mm(film.end_gap)} leaves no film", _inside(case), "make it smaller")
+    imperfection = film.imperfection
+    if isinstance(imperfection, BumpImperfection) and imperfection.position > length:
+        problem = f"{_mm(imperfection.position)} is outside the block"
+        yield _error("film.imperfection.position", problem, _inside(case), "move it")
+    if (
+        isinstance(imperfection, RandomImperfection)
+        and not 0 < imperfection.wavelengths[0] < imperfection.wavelengths[1]
+    ):
+        yield _empty("film.imperfection.wavelengths", imperfection.wavelengths)
+    if isinstance(imperfection, ProfileImperfection):
+        yield from _readable("film.imperfection.file", imperfection.file, read_profile)
 
 
 def _wrinkles(case: Case) -> Iterator[InputError]:
-    if case.wrinkles.averaging_depth > case.block.height:
-        yield _error(
-            "wrinkles.averaging_depth",
-            f"{_mm(case.wrinkles.averaging_depth)}, but the block is {_mm(case.block.height)} high",
-            "at most the block's height, H/2 in the paper",
-            "make it smaller, or leave it out for H/2",
-        )
-    if case.block.symmetry and case.block.height / 2 < case.wrinkles.averaging_depth <= case.block.height:
-        yield _error(
-            "wrinkles.averaging_depth",
-            f"{_mm(case.wrinkles.averaging_depth)} reaches below mid-height, where nothing is meshed",
-            f"at most H/2 = {_mm(case.block.height / 2)} with symmetry",
-            "make it smaller, or set block.symmetry = false",
-        )
     model, film = case.wrinkles.model, case.film
     if model == "none":
         return
     if film is None:
-        yield _error(
-            "wrinkles.model",
-            f'"{model}" without a film',
-            "a [film] section",
-            'add one, or set wrinkles.model = "none"',
-        )
+        cure = 'add one, or set wrinkles.model = "none"'
+        yield _error("wrinkles.model", f'"{model}" without a film', "a [film] section", cure)
         return
-    moduli = film.shear_modulus is not None or film.modulus_from is not None
     measured = film.critical_strain is not None and film.critical_wavelength is not None
-    if model == "quasi-static" and not measured and not moduli:
-        yield _error(
-            "film",
-            "neither critical_strain and critical_wavelength nor a modulus are given",
-            "both measured values, or shear_modulus, or modulus_from",
-            "add critical_strain and critical_wavelength as measured in a quasi-static test",
-        )
-    if model in ("rate-dependent", "resolved") and not moduli:
-        yield _error(
-            "film",
-            f'the "{model}" model needs the film\'s modulus',
-            "shear_modulus or modulus_from",
-            'add modulus_from = "critical_strain" or "critical_wavelength", or the modulus itself',
-        )
+    modulus = film.shear_modulus is not None or film.modulus_from is not None
+    if model == "quasi-static" and not (measured or modulus):
+        problem = "neither critical_strain and critical_wavelength nor a modulus are given"
+        cure = "add critical_strain and critical_wavelength as a quasi-static test gives them"
+        yield _error("film", problem, "both, or else shear_modulus or modulus_from", cure)
+    if model in ("rate-dependent", "resolved") and not modulus:
+        cure = 'add modulus_from = "critical_strain" or "critical_wavelength", or the modulus itself'
+        problem = f'the "{model}" model needs the modulus of the film'
+        yield _error("film", problem, "shear_modulus or modulus_from", cure)
     if model in ("rate-dependent", "resolved") and film.imperfection is None:
-        yield _error(
-            "film.imperfection",
-            f'the "{model}" model needs a seed for its wrinkles',
-            "a [film.imperfection] section",
-            'add, for instance, kind = "sinusoidal", amplitude = "10 um", wavelength = "2.0 mm"',
-        )
+        cure = 'add, for instance, kind = "sinusoidal", amplitude = "10 um", wavelength = "2.0 mm"'
+        problem = f'missing, but the "{model}" model needs a seed for its wrinkles'
+        yield _error("film.imperfection", problem, "a table with kind and amplitude", cure)
+
+
+def _averaging_depth(case: Case) -> Iterator[InputError]:
+    depth, meshed = case.wrinkles.averaging_depth, case.block.meshed_height
+    if depth > meshed * (1 + ROUNDING):
+        where = "upper half of the block" if case.block.symmetry else "block"
+        problem = f"{_mm(depth)}, but the {where} is {_mm(meshed)} high"
+        cure = "make it smaller, or leave it out for H/2"
+        yield _error("wrinkles.averaging_depth", problem, f"at most {_mm(meshed)}", cure)
 
 
 def _drive(case: Case) -> Iterator[InputError]:
-    drive, length = case.drive, case.block.length
+    drive, length, end = case.drive, case.block.length, case.solver.end_time
     if isinstance(drive, StrikerDrive | EndMotionDrive) and drive.stop_distance >= length:
-        yield _error(
-            "drive.stop_distance",
-            f"{_mm(drive.stop_distance)} is the whole block",
-            _inside(case),
-            "make it smaller",
-        )
+        problem = f"{_mm(drive.stop_distance)} crushes the whole block"
+        yield _error("drive.stop_distance", problem, _inside(case), "make it smaller")
     if isinstance(drive, EndMotionDrive) and not drive.stop_distance <= drive.overshoot < length:
-        yield _error(
-            "drive.overshoot",
-            f"{_mm(drive.overshoot)}",
-            f"from stop_distance = {_mm(drive.stop_distance)} to less than the length {_mm(length)}",
-            "it is the final travel of the end, not the part beyond stop_distance",
-        )
-    if isinstance(drive, VelocityStepDrive) and drive.velocity * case.solver.end_time >= length:
-        yield _error(
-            "drive.velocity",
-            f"{drive.velocity:g} m/s crosses the whole block in {case.solver.end_time:g} s",
-            f"velocity * end_time below the length {_mm(length)}",
-            "lower drive.velocity or solver.end_time",
-        )
+        expected = f"stop_distance = {_mm(drive.stop_distance)} at least, and {_inside(case)}"
+        cure = "give the final travel of the end, not the part beyond stop_distance"
+        yield _error("drive.overshoot", f"{_mm(drive.overshoot)} is no final travel", expected, cure)
+    if isinstance(drive, VelocityStepDrive) and drive.velocity * end >= length:
+        problem = f"{drive.velocity:g} m/s crushes the whole block in {_ms(end)}"
+        expected = f"velocity * end_time {_inside(case)}"
+        yield _error("drive.velocity", problem, expected, "lower drive.velocity or solver.end_time")
     if isinstance(drive, CompressionDrive):
         needed = drive.duration * (2 if drive.unload else 1)
-        if needed > case.solver.end_time * (1 + 1e-9):
-            yield _error(
-                "drive.duration",
-                f"the ramp takes {needed:g} s, but the run ends at {case.solver.end_time:g} s",
-                "a ramp that ends before solver.end_time",
-                "raise solver.end_time, or lower drive.duration",
-            )
+        if needed > end * (1 + ROUNDING):
+            problem = f"the ramp takes {_ms(needed)}, but the run ends at {_ms(end)}"
+            cure = "raise solver.end_time, or lower drive.duration"
+            yield _error("drive.duration", problem, "a ramp that ends before solver.end_time", cure)
     if isinstance(drive, HistoryDrive):
-        yield from _history(case, drive)
+        yield from _readable("drive.file", drive.file, read_history) or _covered(drive.file, end)
 
 
-def _history(case: Case, drive: HistoryDrive) -> Iterator[InputError]:
-    try:
-        history = read_history(drive.file)
-    except InputError as error:
-        yield _error("drive.file", str(error), None, None)
-        return
-    if history.time[0] > 0 or history.time[-1] < case.solver.end_time * (1 - 1e-9):
-        yield _error(
-            "drive.file",
-            f"{drive.file} covers {history.time[0]:g} to {history.time[-1]:g} s",
-            f"times from 0 to solver.end_time = {case.solver.end_time:g} s",
-            "shorten solver.end_time, or extend the history",
-        )
+def _covered(file: Path, end: float) -> Iterator[InputError]:
+    time = read_history(file).time
+    if time[0] > 0 or time[-1] < end * (1 - ROUNDING):
+        problem = f"{file} covers {_ms(time[0])} to {_ms(time[-1])}"
+        expected = f"times from 0 to solver.end_time = {_ms(end)}"
+        yield _error("drive.file", problem, expected, "lower solver.end_time, or extend the history")
 
 
 def _times(case: Case) -> Iterator[InputError]:
     end = case.solver.end_time
+    times = {f"analysis.times.{number}": time for number, time in enumerate(case.analysis.times)}
     for name in ("surface_interval", "field_interval", "history_interval"):
-        interval = getattr(case.output, name)
-        if interval > end:
-            yield _error(
-                f"output.{name}",
-                f"{interval:g} s is beyond the end of the run at {end:g} s",
-                "at most solver.end_time",
-                "shorten it, or raise solver.end_time",
-            )
-    for number, time in enumerate(case.analysis.times):
-        if time > end:
-            yield _error(
-                f"analysis.times.{number}",
-                f"{time:g} s is beyond the end of the run at {end:g} s",
-                "times up to solver.end_time",
-                "remove it, or raise solver.end_time",
-            )
+        times[f"output.{name}"] = getattr(case.output, name)
+    for key, time in times.items():
+        if time > end * (1 + ROUNDING):
+            problem = f"{_ms(time)} is beyond the end of the run at {_ms(end)}"
+            yield _error(key, problem, "at most solver.end_time", "lower it, or raise solver.end_time")
 
 
 def _places(case: Case) -> Iterator[InputError]:
-    length = case.block.length
+    limit = case.block.length * (1 + ROUNDING)
     lists = {"output.probes": case.output.probes, "analysis.positions": case.analysis.positions}
-    for key, values in lists.items():
+    for name, values in lists.items():
         for number, x in enumerate(values):
-            if x > length:
-                yield _error(
-                    f"{key}.{number}", f"{_mm(x)} is outside the block", _inside(case), "move or remove it"
-                )
+            if x > limit:
+                problem = f"{_mm(x)} is outside the block"
+                yield _error(f"{name}.{number}", problem, _inside(case), "move or remove it")
     for name in ("front_window", "amplitude_window"):
-        low, high = getattr(case.analysis, name)
-        if not low < high:
-            yield _error(
-                f"analysis.{name}",
-                f"{_mm(low)} to {_mm(high)} is empty",
-                "first the smaller, then the larger x",
-                "swap them",
-            )
-        elif high > length:
-            yield _error(
-                f"analysis.{name}",
-                f"{_mm(low)} to {_mm(high)} leaves the block",
-                _inside(case),
-                "shorten the window",
-            )
-    if case.output.pixel_size >= length:
-        yield _error("output.pixel_size", f"{_mm(case.output.pixel_size)}", _inside(case), "make it smaller")
+        low, high = window = getattr(case.analysis, name)
+        if low >= high:
+            yield _empty(f"analysis.{name}", window)
+        elif high > limit:
+            problem = f"{_mm(low)} to {_mm(high)} leaves the block"
+            yield _error(f"analysis.{name}", problem, _inside(case), "move its end")
+    for name, size in (
+        ("output.pixel_size", case.output.pixel_size),
+        ("analysis.filter_wavelength", case.analysis.filter_wavelength),
+    ):
+        if size > limit:
+            yield _error(name, f"{_mm(size)} is longer than the block", _inside(case), "make it smaller")
 
 
-def _solver(case: Case) -> Iterator[InputError]:
-    if case.solver.mass_scaling > 1 and not isinstance(case.drive, CompressionDrive):
-        yield _error(
-            "solver.mass_scaling",
-            f"{case.solver.mass_scaling:g} in a dynamic run would change the wave speeds",
-            'mass_scaling only with drive.kind = "compression"',
-            "remove it",
-        )
+def _readable(key: str, file: Path, read: Callable[[Path], object]) -> list[InputError]:
+    """The mistake that makes a file which the case names unreadable, if there is one."""
+    try:
+        read(file)
+    except InputError as error:
+        place = f"{error.file}: {error.key}" if error.key else f"{error.file}"
+        return [_error(key, f"{place}: {error.problem}", error.expected, error.cure)]
+    return []
+
+
+def _empty(key: str, window: tuple[float, float]) -> InputError:
+    problem = f"{_mm(window[0])} to {_mm(window[1])} is empty"
+    return _error(key, problem, "the smaller value, then the larger", "swap or change them")
 
 
 def _error(key: str, problem: str, expected: str | None, cure: str | None) -> InputError:
     return InputError(problem, key=key, expected=expected, cure=cure)
 
 
+def _inside(case: Case) -> str:
+    return f"within the length of the block, {_mm(case.block.length)}"
+
+
 def _mm(value: float) -> str:
     return f"{value * 1e3:.6g} mm"
 
 
-def _inside(case: Case) -> str:
-    return f"less than the block's length {_mm(case.block.length)}"
+def _ms(value: float) -> str:
+    return f"{value * 1e3:.6g} ms"

@@ -51,7 +51,7 @@ def fill_defaults(data: Table) -> dict[str, Any]:
 
 
 def _from_substrate(substrate: object) -> dict[str, Any]:
-    """The film's values that are the substrate's unless given; a substrate without them is an error of its own."""
+    """The film's values that are the substrate's unless given; one missing there is an error anyway."""
     given = substrate if isinstance(substrate, Mapping) else {}
     return {
         "poisson_ratio": given.get("poisson_ratio", _poisson_ratio(given)),

@@ -35,7 +35,7 @@ class StrikerDrive(Section):
 class EndMotionDrive(Section):
     """The end moves at ``velocity`` to ``stop_distance``, then slowly on to ``overshoot``.
 
-    The overshoot takes ``overshoot_time``; the whole motion is smoothed with a Gaussian of width ``smoothing``.
+    The overshoot takes ``overshoot_time``; a Gaussian of width ``smoothing`` smooths the whole motion.
     """
 
     kind: Literal["end-motion"]

@@ -27,7 +27,7 @@ class Section(BaseModel):
 
 
 def reject(problem: str, *, expected: str = "", cure: str = "") -> PydanticCustomError:
-    """Return the error that a validator raises, with the parts of a :class:`wrinklewave.errors.InputError`."""
+    """Return the error that a validator raises; its parts become those of an ``InputError``."""
     return PydanticCustomError(
         "rejected", "{problem}", {"problem": problem, "expected": expected, "cure": cure}
     )
@@ -54,12 +54,12 @@ def _from_folder(file: Path, info: ValidationInfo) -> Path:
 
 File = Annotated[Path, Field(strict=False), AfterValidator(_from_folder)]
 
-Length = Annotated[float, _reader(units.LENGTH), _writer(units.LENGTH)]
-Time = Annotated[float, _reader(units.TIME), _writer(units.TIME)]
-Velocity = Annotated[float, _reader(units.VELOCITY), _writer(units.VELOCITY)]
-Density = Annotated[float, _reader(units.DENSITY), _writer(units.DENSITY), Field(gt=0)]
-Pressure = Annotated[float, _reader(units.PRESSURE), _writer(units.PRESSURE)]
-Frequency = Annotated[float, _reader(units.FREQUENCY), _writer(units.FREQUENCY), Field(gt=0)]
+Length = Annotated[float, units.LENGTH, _reader(units.LENGTH), _writer(units.LENGTH)]
+Time = Annotated[float, units.TIME, _reader(units.TIME), _writer(units.TIME)]
+Velocity = Annotated[float, units.VELOCITY, _reader(units.VELOCITY), _writer(units.VELOCITY)]
+Density = Annotated[float, units.DENSITY, _reader(units.DENSITY), _writer(units.DENSITY), Field(gt=0)]
+Pressure = Annotated[float, units.PRESSURE, _reader(units.PRESSURE), _writer(units.PRESSURE)]
+Frequency = Annotated[float, units.FREQUENCY, _reader(units.FREQUENCY), _writer(units.FREQUENCY), Field(gt=0)]
 
 PositiveLength = Annotated[Length, Field(gt=0)]
 NotNegativeLength = Annotated[Length, Field(ge=0)]

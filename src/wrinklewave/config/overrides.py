@@ -15,8 +15,8 @@ def apply_overrides(data: dict[str, Any], overrides: Sequence[str]) -> tuple[dic
 
     Args:
         data: nested tables as read from TOML.
-        overrides: ``section.key=value``; values are TOML, or else plain text (``drive.velocity=5 m/s``); numbers in
-            the key count the entries of a list from 0 (``substrate.prony.0.relaxation_time=60 us``).
+        overrides: ``section.key=value``; values are TOML, or else plain text (``drive.velocity=5 m/s``);
+            numbers in the key count a list's entries from 0 (``substrate.prony.0.relaxation_time=60 us``).
 
     Raises:
         InputError: if an override is not of that form, or its key leads nowhere.
@@ -28,7 +28,7 @@ def apply_overrides(data: dict[str, Any], overrides: Sequence[str]) -> tuple[dic
         key = key.strip()
         if not equals or not all(key.split(".")):
             raise InputError(
-                f"{override!r} is no override",
+                f'"{override}" is no override',
                 file="--set",
                 expected="section.key=value",
                 cure='write, for instance, --set "drive.velocity=5 m/s"',
@@ -61,10 +61,10 @@ def _set(data: dict[str, Any], key: str, value: Any) -> None:
 
 def _entry(parent: Any, part: str, key: str) -> Any:
     if not isinstance(parent, list):
-        raise InputError(f"{part!r} is inside a single value", file="--set", key=key, cure="check the key")
+        raise InputError(f'"{part}" is inside a single value', file="--set", key=key, cure="check the key")
     if not part.isdecimal() or int(part) >= len(parent):
         raise InputError(
-            f"no entry {part!r} in this list",
+            f'no entry "{part}" in this list',
             file="--set",
             key=key,
             expected=f"a number from 0 to {len(parent) - 1}" if parent else "a list that is not empty",

@@ -81,9 +81,11 @@ def read_model(
     try:
         read = model.model_validate(_frozen(data), context={"folder": Path(folder).absolute()})
     except ValidationError as failure:
-        raise_all(input_errors(failure, model=model, file=source, overridden=overridden))
-        raise
-    raise_all([_placed(error, source, overridden) for error in check(read)])
+        found = input_errors(failure, model=model, data=data)
+        raise_all([_placed(error, source, overridden) for error in found])
+        raise  # a validation error without errors would be a mistake of pydantic's
+    together = f"{source} (with --set {', '.join(overridden)})" if overridden else source
+    raise_all([_placed(error, together, overridden) for error in check(read)])
     return read
 
 
@@ -111,6 +113,12 @@ def _frozen(value: Any) -> Any:
     return tuple(_frozen(item) for item in value) if isinstance(value, list) else value
 
 
-def _placed(error: InputError, source: object, overridden: Iterable[str]) -> InputError:
-    place = "--set" if error.key in overridden else source
+def _placed(error: InputError, source: object, overridden: Sequence[str]) -> InputError:
+    """The error with the place where its value was written."""
+    key = f"{error.key}."
+    place = (
+        "--set"
+        if any(key.startswith(f"{changed}.") or changed.startswith(key) for changed in overridden)
+        else source
+    )
     return InputError(error.problem, file=place, key=error.key, expected=error.expected, cure=error.cure)

@@ -53,11 +53,12 @@ class Solid(Section):
                 raise reject(
                     f"prony term {number} has no bulk_modulus",
                     expected='with bulk_response = "custom" every term has its own bulk_modulus',
-                    cure='add bulk_modulus to each [[...prony]] table ("0 Pa" for a term that does not relax in bulk)',
+                    cure='add it to each term; "0 Pa" for one that does not relax in bulk',
                 )
             if not custom and term.bulk_modulus is not None:
                 raise reject(
                     f'prony term {number} has a bulk_modulus, but bulk_response is "{self.bulk_response}"',
+                    expected='a bulk_modulus in the terms only with bulk_response = "custom"',
                     cure='set bulk_response = "custom", or drop bulk_modulus from the terms',
                 )
         return self
@@ -88,7 +89,7 @@ class Substrate(Solid):
             raise reject(
                 "the material relaxes, but bulk_response is not given",
                 expected='"elastic-long-term", "elastic-instantaneous", "relaxing" or "custom"',
-                cure='choose how the bulk modulus behaves: wave speeds depend on it; the paper\'s case takes "elastic-long-term"',
+                cure='choose one, the wave speeds depend on it; the paper case has "elastic-long-term"',
             )
         return self
 
@@ -130,6 +131,7 @@ class Film(Solid):
         if self.modulus_from is not None and getattr(self, self.modulus_from) is None:
             raise reject(
                 f'modulus_from = "{self.modulus_from}", but {self.modulus_from} is not given',
+                expected="what the modulus is to be derived from",
                 cure=f"add the measured {self.modulus_from}",
             )
         return self

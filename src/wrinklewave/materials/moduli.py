@@ -1,7 +1,8 @@
 """Small-strain moduli: relations between them, and the relaxing moduli of a substrate or a film.
 
-Isotropic solids; mu is the shear modulus, K the bulk modulus, E Young's modulus, nu Poisson's ratio. The subscript
-``inf`` stands for long times (the paper's mu_0), ``k`` for the Prony terms, "instantaneous" for their sum.
+Isotropic solids; mu is the shear modulus, K the bulk modulus, E Young's modulus, nu Poisson's ratio. The
+subscript ``inf`` stands for long times (the paper's mu_0), ``k`` for the Prony terms, "instantaneous" for the
+sum of all.
 """
 
 from __future__ import annotations
@@ -108,9 +109,10 @@ def viscoelastic(
 ) -> Viscoelastic:
     """Return the relaxing moduli under one of the choices of bulk response.
 
-    ``"elastic-long-term"``: K = K_0 at all times. ``"elastic-instantaneous"``: K = K_i = K_0 mu_i/mu_0 at all times
-    (the paper's K_i = (E_0 + E_1)/(3 (1 - 2 nu))). ``"relaxing"``: K relaxes from K_i to K_0 in proportion to the
-    shear modulus, so nu stays constant. ``"custom"``: each term has a bulk share of its own.
+    - ``"elastic-long-term"``: K = K_0 at all times.
+    - ``"elastic-instantaneous"``: K = K_i at all times, K_i = K_0 mu_i/mu_0 = (E_0 + E_1)/(3 (1 - 2 nu)).
+    - ``"relaxing"``: K relaxes from K_i to K_0 in proportion to the shear modulus, so that nu stays constant.
+    - ``"custom"``: each term has a bulk share of its own.
 
     Args:
         density: [kg/m^3].
