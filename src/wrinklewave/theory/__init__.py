@@ -1,0 +1,1 @@
+"""Theory: the closed forms that simulations and measurements are held against."""
