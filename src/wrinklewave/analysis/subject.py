@@ -40,11 +40,14 @@ class Subject:
     it.
 
     Attributes:
+        kind, name: "simulation" or "measurement", and what it is called.
         critical_strain, critical_wavelength: eps_c [1] and lambda_c [m] of the film.
         plane_strain_modulus: of the substrate in the long term, E_0 / (1 - nu^2) [Pa].
         stop_distance: travel of the striker to its stoppers [m].
     """
 
+    kind: str
+    name: str
     time: Array
     x: Array
     X: Array
@@ -80,7 +83,9 @@ def subject_of(surface: xr.Dataset) -> Subject:
         _check_even(required[axis], axis)
     optional = {name: _array(surface, name) for name in OPTIONAL_VARIABLES}
     attributes = {name: _number(surface, name) for name in OPTIONAL_ATTRIBUTES}
-    return Subject(**required, **optional, length=float(surface.attrs["length"]), **attributes)  # type: ignore[arg-type]
+    labels = {name: str(surface.attrs.get(name, "")) for name in ("kind", "name")}
+    length = float(surface.attrs["length"])
+    return Subject(**labels, **required, **optional, length=length, **attributes)  # type: ignore[arg-type]
 
 
 def _array(surface: xr.Dataset, name: str) -> Array | None:

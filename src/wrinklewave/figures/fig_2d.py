@@ -1,0 +1,46 @@
+"""Fig. 2D: spectrum of the struck end's motion."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wrinklewave.figures.inputs import FigureInputs
+from wrinklewave.figures.registry import figure
+from wrinklewave.figures.style import BOUNDARY_COLOUR, MILLI, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+HIGHEST_FREQUENCY = 2000.0
+
+
+@figure(
+    "fig_2d_boundary_spectrum",
+    number="2D",
+    caption="Motion of the struck end, and the magnitude of its Fourier transform over its maximum.",
+)
+def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
+    """Displacement against time, and its spectrum up to 2 kHz."""
+    boundary = inputs.analysis.boundary
+    drawing, (motion, spectrum) = new_figure(6.3, 2.6, columns=2)
+    motion.plot(MILLI * inputs.subject.time, MILLI * boundary.displacement, color=BOUNDARY_COLOUR)
+    for moment, label in ((boundary.stop_time, "stop"), (boundary.separation_time, "separation")):
+        if np.isfinite(moment):
+            motion.axvline(
+                MILLI * moment, color="0.5", lw=0.8, ls=":" if label == "stop" else "--", label=label
+            )
+    motion.set(xlabel="time (ms)", ylabel="displacement of the end (mm)")
+    if motion.get_legend_handles_labels()[1]:
+        motion.legend(loc="lower right")
+    shown = boundary.spectrum.frequency <= HIGHEST_FREQUENCY
+    spectrum.plot(
+        boundary.spectrum.frequency[shown], boundary.spectrum.magnitude[shown], color=BOUNDARY_COLOUR
+    )
+    spectrum.axvline(400.0, color="0.5", lw=0.8, ls="--", label="400 Hz (paper)")
+    spectrum.set(
+        xlabel="frequency (Hz)", ylabel="magnitude / maximum", ylim=(0.0, 1.05), xlim=(0.0, HIGHEST_FREQUENCY)
+    )
+    spectrum.legend()
+    return drawing

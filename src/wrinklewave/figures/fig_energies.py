@@ -1,0 +1,61 @@
+"""The energy balance of a simulation against time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from wrinklewave.figures.inputs import FigureInputs
+from wrinklewave.figures.registry import figure
+from wrinklewave.figures.style import MILLI, Margins, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SHARES = {
+    "internal_elastic": ("stored", "#0000a7"),
+    "kinetic": ("kinetic", "#c1272d"),
+    "viscous": ("viscous dissipation", "#008176"),
+    "bulk_viscosity": ("bulk viscosity", "#eecc16"),
+    "hourglass": ("hourglass", "#b34fc4"),
+    "contact": ("contact", "#7f7f7f"),
+    "friction": ("friction", "#8c564b"),
+}
+
+
+@figure(
+    "energy_balance",
+    number="",
+    caption="Where the work of the struck end goes (stacked), and the imbalance over the largest external"
+    " work.",
+    possible=lambda inputs: inputs.history is not None,
+)
+def energy_balance(inputs: FigureInputs) -> Figure:
+    """Stacked energies with the external work, and the relative imbalance below."""
+    history = inputs.history
+    assert history is not None  # by `possible`
+    time = MILLI * history["time_s"]
+    drawing, (energies, imbalance) = new_figure(
+        6.3,
+        4.2,
+        rows=2,
+        sharex=True,
+        height_ratios=(3, 1),
+        margins=Margins(left=0.75, right=1.6, between_rows=0.3),
+    )
+    names = [name for name in SHARES if name in history]
+    energies.stackplot(
+        time,
+        [history[name] for name in names],
+        labels=[SHARES[name][0] for name in names],
+        colors=[SHARES[name][1] for name in names],
+        alpha=0.75,
+        lw=0,
+    )
+    energies.plot(time, history["external_work"], color="black", lw=1.2, label="external work")
+    energies.set(ylabel="energy (J/m)", xlim=(time[0], time[-1]))
+    energies.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    largest = max(abs(history["external_work"]).max(), 1e-300)
+    imbalance.plot(time, 100.0 * history["imbalance"] / largest, color="black", lw=1.0)
+    imbalance.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
+    imbalance.set(xlabel="time (ms)", ylabel="imbalance (%)")
+    return drawing

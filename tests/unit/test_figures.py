@@ -1,0 +1,106 @@
+"""Every registered figure is drawn, fits its page, and is written."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from wrinklewave import figures
+from wrinklewave.analysis.analyse import analyse
+from wrinklewave.wrinkling.travelling_pulse import TravellingPulse
+
+SETTINGS = SimpleNamespace(
+    front_fraction=0.1,
+    front_window=(12e-3, 40e-3),
+    wrinkle_threshold=50e-6,
+    filter_wavelength=5e-3,
+    amplitude_window=(16e-3, 49e-3),
+    positions=(15e-3, 25e-3, 45e-3),
+)
+TIMES = (0.38e-3, 1.2e-3)
+
+
+def _snapshots() -> figures.StrainSnapshots:
+    X, Y = np.meshgrid(np.linspace(0.0, 50.4e-3, 41), np.linspace(0.0, 18.5e-3, 16))
+    travel = np.minimum(10.0 * np.array(TIMES), 6.3e-3)[:, None, None]
+    strain = travel / 50.4e-3 * (1 + np.cos(Y[:-1, :-1] / 6e-3))
+    x = X + travel * (1 - X / 50.4e-3)
+    return figures.StrainSnapshots(np.array(TIMES), X, Y, x, np.broadcast_to(Y, x.shape), strain)
+
+
+def _history() -> dict[str, np.ndarray]:
+    time = np.linspace(0.0, 3e-3, 200)
+    work = 10.0 * (1 - np.exp(-time / 1e-3))
+    energies = {"internal_elastic": 0.5, "kinetic": 0.2, "viscous": 0.295, "hourglass": 0.005}
+    return {"time_s": time, "external_work": work, "imbalance": 1e-4 * work} | {
+        name: share * work for name, share in energies.items()
+    }
+
+
+@pytest.fixture(scope="module")
+def inputs() -> figures.FigureInputs:
+    surface = TravellingPulse(end_time=3e-3, interval=20e-6, pixel=1e-4).surface()
+    surface["stress_xx"] = surface["strain_xx"] * 200e3
+    surface["stress_xx"].attrs["units"] = "Pa"
+    surface.attrs["plane_strain_modulus"] = 172.5e3
+    return figures.figure_inputs(
+        surface,
+        analyse(surface, SETTINGS),
+        positions=SETTINGS.positions,
+        times=TIMES,
+        snapshots=_snapshots(),
+        history=_history(),
+    )
+
+
+@pytest.mark.parametrize("name", figures.FIGURES)
+def test_figure_fits_its_page(name: str, inputs: figures.FigureInputs) -> None:
+    """Nothing is cut off, every axis is labelled, and every map has a colour bar."""
+    drawing = figures.FIGURES[name].draw(inputs)
+    box = drawing.get_tightbbox()
+    assert box.x0 >= 0.0
+    assert box.y0 >= 0.0
+    assert box.x1 <= drawing.get_figwidth()
+    assert box.y1 <= drawing.get_figheight()
+    for axes in drawing.axes:
+        assert axes.get_ylabel(), f"an axis of {name} has no label"
+
+
+def test_all_figures_are_written(inputs: figures.FigureInputs, tmp_path: Path) -> None:
+    files = figures.write_all(tmp_path / "figures", inputs)
+    assert list(files) == list(figures.FIGURES)
+    for path in files.values():
+        assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_figures_without_their_inputs_are_left_out(inputs: figures.FigureInputs, tmp_path: Path) -> None:
+    bare = replace(
+        inputs,
+        analysis=replace(inputs.analysis, strains=None, quasi_static=None),
+        snapshots=None,
+        history=None,
+    )
+    files = figures.write_all(tmp_path, bare)
+    numbers = {figures.FIGURES[name].number for name in files}
+    assert numbers == {"2C", "2D", "3", "4B", "5D"}
+
+
+def test_a_sample_at_rest_can_be_drawn(tmp_path: Path) -> None:
+    motion = TravellingPulse(
+        velocity=0.0, travel=0.0, height=0.0, amplitude=0.0, end_time=1e-4, pixel=1e-4
+    ).surface()
+    inputs = figures.figure_inputs(
+        motion, analyse(motion, SETTINGS), positions=SETTINGS.positions, times=TIMES
+    )
+    assert figures.write_all(tmp_path, inputs)
+
+
+def test_importing_figures_does_not_import_matplotlib() -> None:
+    code = "import sys, wrinklewave.figures; sys.exit('matplotlib' in sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)
