@@ -16,6 +16,7 @@ from wrinklewave.config.fields import (
     NotNegativeTime,
     PositiveLength,
     PositiveTime,
+    PositiveVelocity,
     Section,
     Strain,
     Window,
@@ -119,6 +120,9 @@ class Analysis(Section):
     amplitude_window: Annotated[Window, Field(description="x over which amplitude and wavelength are taken")]
     positions: Annotated[tuple[NotNegativeLength, ...], Field(description="for displacement against time")]
     times: Annotated[tuple[NotNegativeTime, ...], Field(description="for displacement against position")]
+    measured_front_speed: Annotated[
+        PositiveVelocity | None, Field(description="c of an experiment, for the theory's delay lambda_c/c")
+    ] = None
     loss_frequency: Annotated[
         Frequency | None, Field(description="for storage and loss modulus in the theory")
     ] = None

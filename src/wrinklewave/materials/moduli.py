@@ -103,7 +103,7 @@ def viscoelastic(
     *,
     density: float,
     shear_modulus: float,
-    long_term_bulk_modulus: float,
+    bulk_modulus_0: float,
     bulk_response: BulkResponse,
     prony: Sequence[PronyTerm],
 ) -> Viscoelastic:
@@ -117,12 +117,12 @@ def viscoelastic(
     Args:
         density: [kg/m^3].
         shear_modulus: long-term mu_0 [Pa].
-        long_term_bulk_modulus: K_0 [Pa].
+        bulk_modulus_0: long-term K_0 [Pa].
         bulk_response: the choice.
         prony: the terms, with ``bulk_modulus`` set if the choice is ``"custom"``.
     """
     mu_k = np.array([term.shear_modulus for term in prony], dtype=np.float64)
-    K_inf, K_k = long_term_bulk_modulus, np.zeros_like(mu_k)
+    K_inf, K_k = bulk_modulus_0, np.zeros_like(mu_k)
     if bulk_response == "elastic-instantaneous":
         K_inf *= 1 + float(mu_k.sum()) / shear_modulus
     elif bulk_response == "relaxing":
@@ -133,16 +133,27 @@ def viscoelastic(
     return Viscoelastic(density=density, mu_inf=shear_modulus, K_inf=K_inf, mu_k=mu_k, K_k=K_k, tau_k=tau_k)
 
 
+def long_term_bulk_modulus(substrate: Substrate) -> float:
+    """K_0 [Pa] of a case's substrate, as given or from Poisson's ratio."""
+    if substrate.bulk_modulus is not None:
+        return substrate.bulk_modulus
+    assert substrate.poisson_ratio is not None  # a case has one of the two
+    return bulk_modulus(substrate.shear_modulus, substrate.poisson_ratio)
+
+
+def long_term_poisson_ratio(substrate: Substrate) -> float:
+    """Return nu of a case's substrate, as given or from the long-term bulk modulus."""
+    if substrate.poisson_ratio is not None:
+        return substrate.poisson_ratio
+    return poisson_ratio(substrate.shear_modulus, long_term_bulk_modulus(substrate))
+
+
 def substrate_moduli(substrate: Substrate) -> Viscoelastic:
     """Return the relaxing moduli of a case's substrate."""
-    K_0 = substrate.bulk_modulus
-    if substrate.poisson_ratio is not None:
-        K_0 = bulk_modulus(substrate.shear_modulus, substrate.poisson_ratio)
-    assert K_0 is not None  # the case has one of the two
     return viscoelastic(
         density=substrate.density,
         shear_modulus=substrate.shear_modulus,
-        long_term_bulk_modulus=K_0,
+        bulk_modulus_0=long_term_bulk_modulus(substrate),
         bulk_response=substrate.bulk_response,
         prony=substrate.prony,
     )
@@ -157,7 +168,7 @@ def film_moduli(film: Film, mu: float) -> Viscoelastic:
     return viscoelastic(
         density=film.density,
         shear_modulus=mu,
-        long_term_bulk_modulus=bulk_modulus(mu, film.poisson_ratio),
+        bulk_modulus_0=bulk_modulus(mu, film.poisson_ratio),
         bulk_response=film.bulk_response,
         prony=film.prony,
     )
