@@ -1,0 +1,74 @@
+"""Element fields of the present state, for outputs."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import prange
+
+from wrinklewave._jit import parallel, serial
+from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
+from wrinklewave.dynamics.energy import deformation, overstresses
+from wrinklewave.dynamics.points import bulk_place, corners, n_points, point_place, volume_change
+from wrinklewave.materials.neo_hookean import second_piola_kirchhoff
+
+FIELDS = ("strain_xx", "strain_rate_xx", "nominal_stress_xx", "stress_xx", "stress_yy", "stress_xy", "volume_ratio")
+"""Element means: nominal strain 1 - F11 and nominal stress -P11 (compression > 0) [1, Pa], rate of the strain along x
+per current length, -dv_x/dx [1/s], Cauchy stress (tension > 0) [Pa], volume ratio J [1]."""
+STRAIN, RATE, NOMINAL, XX, YY, XY, VOLUME = range(7)
+
+
+@serial
+def _fields_row(j, a, memory, terms, out):
+    layer = a.layer[j]
+    factors = a.factors[layer]
+    mu, K = a.moduli[layer, 0], a.moduli[layer, 1]
+    n, last = n_points(memory, terms), bulk_place(memory, terms)
+    for i in range(a.X.shape[1] - 1):
+        X, Y, u, w = corners(a.X, j, i), corners(a.Y, j, i), corners(a.u, j, i), corners(a.w, j, i)
+        vx = corners(a.vx, j, i)
+        e = volume_change(X, Y, u, w)
+        p = K * e
+        if last:
+            for m in range(len(terms)):
+                p += memory[(last + 1) * m + last][j, i] + factors[m, 4] * e
+        out[:, j, i] = 0.0
+        for g in range(n):
+            xi, eta = point_place(g, n)
+            bx, by, _ = point_gradients(xi, eta, X, Y)
+            q = deformation(bx, by, u, w)
+            A11 = mu * q.s11 + overstresses(memory, terms, factors, 4 * g, j, i, q.s11, False)
+            A22 = mu * q.s22 + overstresses(memory, terms, factors, 4 * g + 1, j, i, q.s22, False)
+            A12 = mu * q.s12 + overstresses(memory, terms, factors, 4 * g + 2, j, i, q.s12, False)
+            A33 = mu * q.s33 + overstresses(memory, terms, factors, 4 * g + 3, j, i, q.s33, False)
+            Ji2 = q.J23 * q.J23 * q.J23
+            S11, S22, S12 = second_piola_kirchhoff(A11, A22, A12, A33, q.C11, q.C22, q.C12, q.J, q.J23, Ji2, p)
+            P11, P12 = q.F11 * S11 + q.F12 * S12, q.F11 * S12 + q.F12 * S22
+            P21, P22 = q.F21 * S11 + q.F22 * S12, q.F21 * S12 + q.F22 * S22
+            out[STRAIN, j, i] += (1.0 - q.F11) / n
+            out[RATE, j, i] -= (dot(bx, vx) * q.F22 - dot(by, vx) * q.F21) / (q.J * n)
+            out[NOMINAL, j, i] -= P11 / n
+            out[XX, j, i] += (P11 * q.F11 + P12 * q.F12) / (q.J * n)
+            out[YY, j, i] += (P21 * q.F21 + P22 * q.F22) / (q.J * n)
+            out[XY, j, i] += (P11 * q.F21 + P12 * q.F22) / (q.J * n)
+        out[VOLUME, j, i] = 1.0 + e
+
+
+@parallel
+def element_fields(a, memory, terms, out):
+    """Fill ``out`` [len(FIELDS), n_rows, n_columns] with the fields of the present state."""
+    n_parts = a.shares.size - 1
+    for part in prange(n_parts):
+        for j in range(a.shares[part], a.shares[part + 1]):
+            _fields_row(j, a, memory, terms, out)
+
+
+def to_nodes(columns: np.ndarray) -> np.ndarray:
+    """Mean of adjacent element columns at the nodes between them; the end nodes take their only neighbour's value."""
+    padded = np.concatenate([columns[..., :1], columns, columns[..., -1:]], axis=-1)
+    return 0.5 * (padded[..., 1:] + padded[..., :-1])
+
+
+def depth_weights(mesh_y: np.ndarray, top: float, depth: float) -> np.ndarray:
+    """Share of each element row in the mean over ``depth`` below ``top`` [m], shape [n_rows]; rows cut by it count in part."""
+    inside = np.clip(mesh_y, top - depth, top)
+    return np.diff(inside) / depth

@@ -1,0 +1,188 @@
+"""From a case to the arrays that the kernels take."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wrinklewave.config.history import read_history
+from wrinklewave.dynamics import drives
+from wrinklewave.dynamics.boundary import (
+    FIXED,
+    FREE,
+    LEFT_HELD,
+    LEFT_LINEAR,
+    LEFT_MOVED,
+    LEFT_STRAIGHT,
+    LEFT_STRUCK,
+    ROLLER,
+    Boundary,
+)
+from wrinklewave.dynamics.points import MEAN_DILATATION_COMPONENTS, ONE_POINT_COMPONENTS
+from wrinklewave.dynamics.step import Arrays
+from wrinklewave.materials.moduli import plane_wave_modulus, substrate_moduli
+from wrinklewave.mesh.block import GridMesh, block
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from wrinklewave.config import Case
+    from wrinklewave.materials.moduli import Viscoelastic
+
+EDGES = {"free": FREE, "fixed": FIXED, "roller": ROLLER}
+TRANSVERSE = {"free": LEFT_MOVED, "held": LEFT_HELD, "linear": LEFT_STRAIGHT}
+AT_REST = np.array([[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]])
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A mesh with its materials, edges and state, ready to be stepped.
+
+    Args:
+        mesh: the undeformed mesh.
+        materials: one per layer of the mesh.
+        arrays: state and coefficients, see :class:`wrinklewave.dynamics.step.Arrays`.
+        memory: what the Prony terms remember, shape [n_terms * components, n_rows, n_columns].
+        terms: one entry per Prony term.
+        boundary: conditions at the edges.
+        density: of each layer, mass scaling included [kg/m³].
+    """
+
+    mesh: GridMesh
+    materials: Sequence[Viscoelastic]
+    arrays: Arrays
+    memory: NDArray[np.float64]
+    terms: tuple[float, ...]
+    boundary: Boundary
+    density: NDArray[np.float64]
+
+    @property
+    def memory_rows(self) -> tuple[NDArray[np.float64], ...]:
+        """The memory as the kernels take it: one array per component."""
+        return tuple(self.memory)
+
+
+def build_model(case: Case, *, threads: int = 1) -> Model:
+    """Mesh, materials and edges of a case, at rest."""
+    half = case.block.height / 2
+    mesh = block(
+        length=case.block.length,
+        bottom=0.0 if case.block.symmetry else -half,
+        top=half,
+        elements=case.mesh.elements,
+        grading=case.mesh.grading,
+    )
+    left, motion, across = _drive(case)
+    boundary = Boundary(
+        left=left,
+        right=EDGES[case.boundaries.right],
+        top=EDGES[case.boundaries.top],
+        bottom=ROLLER if case.block.symmetry else EDGES[case.boundaries.top],
+        wall=case.boundaries.wall,
+        length=case.block.length,
+        friction=getattr(case.drive, "friction", 0.0),
+        motion=motion,
+        motion_across=across,
+        old=np.zeros((3, 4, max(mesh.X.shape))),
+    )
+    return assemble(
+        mesh,
+        [substrate_moduli(case.substrate)],
+        boundary,
+        one_point=case.mesh.element == "one-point",
+        hourglass=case.mesh.hourglass.stiffness,
+        bulk_viscosity=case.solver.bulk_viscosity,
+        mass_scaling=case.solver.mass_scaling,
+        threads=threads,
+    )
+
+
+def assemble(
+    mesh: GridMesh,
+    materials: Sequence[Viscoelastic],
+    boundary: Boundary,
+    *,
+    one_point: bool = True,
+    hourglass: float = 1.0,
+    bulk_viscosity: tuple[float, float] = (0.06, 1.2),
+    mass_scaling: float = 1.0,
+    threads: int = 1,
+) -> Model:
+    """A model at rest from its parts; one material per layer of the mesh."""
+    density = np.array([m.density * mass_scaling for m in materials])
+    terms = _prony_terms(materials)
+    bulk_relaxes = bool(np.any(terms[:, :, 1] > 0))
+    components = (ONE_POINT_COMPONENTS if one_point else MEAN_DILATATION_COMPONENTS)[bulk_relaxes]
+    n_terms = terms.shape[1]
+    rows, columns = mesh.shape
+    parts = min(threads, rows)
+    nodes = mesh.X.shape
+    arrays = Arrays(
+        X=np.ascontiguousarray(mesh.X),
+        Y=np.ascontiguousarray(mesh.Y),
+        u=np.zeros(nodes),
+        w=np.zeros(nodes),
+        vx=np.zeros(nodes),
+        vy=np.zeros(nodes),
+        inverse_mass=1.0 / lumped_mass(mesh, density),
+        layer=mesh.layer,
+        moduli=np.array([_moduli(m, rho, bulk_viscosity, hourglass) for m, rho in zip(materials, density, strict=True)]),
+        terms=terms,
+        factors=np.ones((len(materials), n_terms, 5)),
+        shares=np.linspace(0, rows, parts + 1).astype(np.int64),
+        forces=np.zeros((parts, 3, 8, columns + 2)),
+        nothing=np.zeros((8, columns + 2)),
+    )
+    memory = np.zeros((n_terms * components, rows, columns))
+    return Model(mesh, materials, arrays, memory, (0.0,) * n_terms, boundary, density)
+
+
+def lumped_mass(mesh: GridMesh, density: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Nodal masses [kg/m]: a quarter of each adjacent element's."""
+    quarter = 0.25 * density[mesh.layer][:, None] * mesh.areas()
+    mass = np.zeros(mesh.X.shape)
+    for corner in (mass[:-1, :-1], mass[:-1, 1:], mass[1:, 1:], mass[1:, :-1]):
+        corner += quarter
+    return mass
+
+
+def _moduli(
+    material: Viscoelastic, density: float, viscosity: tuple[float, float], hourglass: float
+) -> list[float]:
+    M = plane_wave_modulus(material.mu_instantaneous, material.K_instantaneous)
+    linear = viscosity[0] * np.sqrt(M * density)
+    return [material.mu_inf, material.K_inf, linear, density * viscosity[1] ** 2, hourglass]
+
+
+def _prony_terms(materials: Sequence[Viscoelastic]) -> NDArray[np.float64]:
+    """Terms of every layer, padded with terms of no modulus to one number for all (at least one)."""
+    n = max(1, *(m.tau_k.size for m in materials))
+    terms = np.zeros((len(materials), n, 3))
+    terms[:, :, 2] = 1.0
+    for layer, m in enumerate(materials):
+        terms[layer, : m.tau_k.size] = np.column_stack([m.mu_k, m.K_k, m.tau_k])
+    return terms
+
+
+def _drive(case: Case) -> tuple[int, NDArray[np.float64], NDArray[np.float64]]:
+    """Kind of the left edge, and the histories of the plate or end along x and across."""
+    drive = case.drive
+    if drive.kind == "striker":
+        return LEFT_STRUCK, drives.striker(drive), AT_REST
+    if drive.kind == "end-motion":
+        return TRANSVERSE[drive.transverse], drives.end_motion(drive), AT_REST
+    if drive.kind == "compression":
+        ramp = drives.compression(drive.strain * case.block.length, drive.duration, drive.unload)
+        return LEFT_MOVED, ramp, AT_REST
+    if drive.kind == "velocity-step":
+        return LEFT_MOVED, drives.velocity_step(drive), AT_REST
+    history = read_history(Path(drive.file))
+    motion = drives.measured(history.time, history.u_x, drive.smoothing)
+    if history.u_y is None:
+        return LEFT_MOVED, motion, AT_REST
+    return LEFT_LINEAR, motion, drives.measured(history.time, history.u_y, drive.smoothing)

@@ -1,0 +1,132 @@
+"""The innermost loops on the CPU: one row of elements, one row of nodes, in vector instructions.
+
+The mesh is a grid of quadrilaterals, so a row of elements reads two rows of nodes at neighbouring places: no
+connectivity, no gather. A row of elements writes the forces on its corners to a buffer of one row, and the nodes
+between two rows are moved as soon as both buffers are full. The whole step so passes once over memory.
+
+Arrays: ``X, Y`` undeformed positions [m], ``u, w`` displacements [m], ``vx, vy`` velocities [m/s], each
+[n_node_rows, n_node_columns]; ``memory`` a tuple of arrays [n_element_rows, n_element_columns]: for each Prony term
+the components 11, 22, 12, 33, hourglass x, hourglass y, and mean stress if the bulk relaxes; ``terms`` a tuple whose
+length is the number of terms, known when the kernel is compiled so that its loop unrolls; ``factors`` [n_terms, 5]: b
+of the last step, a and b of the next for the shear, then both b for the bulk;
+``forces`` [8, n_element_columns + 2]: f1x, f1y, ... f4x, f4y, shifted by one column and zero at both ends.
+"""
+
+from __future__ import annotations
+
+from wrinklewave._jit import uintp, vector
+from wrinklewave.dynamics.elements.one_point import hourglass_stiffness, nodal_forces
+from wrinklewave.dynamics.elements.quadrilateral import (
+    bulk_viscosity,
+    centre_gradients,
+    gradient,
+    squared_length,
+    volume_rate,
+)
+from wrinklewave.materials.neo_hookean import (
+    inverse_cube_root,
+    isochoric_shape,
+    right_cauchy_green,
+    second_piola_kirchhoff,
+)
+from wrinklewave.materials.prony import memory as next_memory
+from wrinklewave.materials.prony import overstress
+
+ONE = uintp(1)
+
+
+@vector
+def one_point_row(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """Forces of element row ``j`` of one-point quadrilaterals; ``memory`` is brought to the next step.
+
+    ``moduli``: long-term shear and bulk modulus [Pa], linear and quadratic bulk viscosity, hourglass factor.
+    """
+    mu, K, linear, quadratic, hourglass = moduli[0], moduli[1], moduli[2], moduli[3], moduli[4]
+    stride = len(memory) // len(terms)
+    bulk_relaxes = stride == 7
+    r = uintp(j)
+    s = r + ONE
+    for i in range(uintp(X.shape[1] - 1)):
+        k = i + ONE
+        x13, y13 = X[r, i] - X[s, k], Y[r, i] - Y[s, k]
+        x24, y24 = X[r, k] - X[s, i], Y[r, k] - Y[s, i]
+        b1x, b1y, b2x, b2y, A = centre_gradients(x13, y13, x24, y24)
+        u13, u24 = u[r, i] - u[s, k], u[r, k] - u[s, i]
+        w13, w24 = w[r, i] - w[s, k], w[r, k] - w[s, i]
+        G11, G12 = gradient(b1x, b1y, b2x, b2y, u13, u24)
+        G21, G22 = gradient(b1x, b1y, b2x, b2y, w13, w24)
+        V11, V12 = gradient(b1x, b1y, b2x, b2y, vx[r, i] - vx[s, k], vx[r, k] - vx[s, i])
+        V21, V22 = gradient(b1x, b1y, b2x, b2y, vy[r, i] - vy[s, k], vy[r, k] - vy[s, i])
+
+        F11, F22 = 1.0 + G11, 1.0 + G22
+        e = G11 + G22 + G11 * G22 - G12 * G21
+        J = 1.0 + e
+        root = inverse_cube_root(J)
+        J23 = root * root
+        Ji = J23 * root
+        Ji2 = Ji * Ji
+        C11, C22, C12 = right_cauchy_green(F11, G12, G21, F22)
+        s11, s22, s12, s33 = isochoric_shape(C11, C22, C12, Ji2)
+
+        hX = (X[r, i] - X[r, k]) + (X[s, k] - X[s, i])
+        hY = (Y[r, i] - Y[r, k]) + (Y[s, k] - Y[s, i])
+        qx = (u[r, i] - u[r, k]) + (u[s, k] - u[s, i]) - hX * G11 - hY * G12
+        qy = (w[r, i] - w[r, k]) + (w[s, k] - w[s, i]) - hX * G21 - hY * G22
+
+        A11, A22, A12, A33, Qx, Qy, p = mu * s11, mu * s22, mu * s12, mu * s33, mu * qx, mu * qy, K * e
+        for m in range(len(terms)):
+            b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
+            H = overstress(memory[stride * m][r, i], b, s11)
+            A11 += H
+            memory[stride * m][r, i] = next_memory(H, a, b_next, s11)
+            H = overstress(memory[stride * m + 1][r, i], b, s22)
+            A22 += H
+            memory[stride * m + 1][r, i] = next_memory(H, a, b_next, s22)
+            H = overstress(memory[stride * m + 2][r, i], b, s12)
+            A12 += H
+            memory[stride * m + 2][r, i] = next_memory(H, a, b_next, s12)
+            H = overstress(memory[stride * m + 3][r, i], b, s33)
+            A33 += H
+            memory[stride * m + 3][r, i] = next_memory(H, a, b_next, s33)
+            H = overstress(memory[stride * m + 4][r, i], b, qx)
+            Qx += H
+            memory[stride * m + 4][r, i] = next_memory(H, a, b_next, qx)
+            H = overstress(memory[stride * m + 5][r, i], b, qy)
+            Qy += H
+            memory[stride * m + 5][r, i] = next_memory(H, a, b_next, qy)
+            if bulk_relaxes:
+                H = overstress(memory[stride * m + 6][r, i], factors[m, 3], e)
+                p += H
+                memory[stride * m + 6][r, i] = next_memory(H, a, factors[m, 4], e)
+
+        p += bulk_viscosity(
+            volume_rate(F11, G12, G21, F22, V11, V12, V21, V22, Ji),
+            squared_length(x13, y13, x24, y24, A),
+            linear,
+            quadratic,
+        )
+        S11, S22, S12 = second_piola_kirchhoff(A11, A22, A12, A33, C11, C22, C12, J, J23, Ji2, p)
+        stiffness = hourglass_stiffness(b1x, b1y, b2x, b2y, A, hourglass)
+        T1, T2 = A * (F11 * S11 + G12 * S12), A * (F11 * S12 + G12 * S22)
+        f1, f2, f3, f4 = nodal_forces(b1x, b1y, b2x, b2y, T1, T2, hX, hY, stiffness * Qx)
+        forces[0, k], forces[2, k], forces[4, k], forces[6, k] = f1, f2, f3, f4
+        T1, T2 = A * (G21 * S11 + F22 * S12), A * (G21 * S12 + F22 * S22)
+        f1, f2, f3, f4 = nodal_forces(b1x, b1y, b2x, b2y, T1, T2, hX, hY, stiffness * Qy)
+        forces[1, k], forces[3, k], forces[5, k], forces[7, k] = f1, f2, f3, f4
+
+
+@vector
+def node_row(j, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+    """Move node row ``j`` by central differences, from the forces of the element rows below and above it."""
+    r = uintp(j)
+    for i in range(uintp(u.shape[1])):
+        k = i + ONE
+        c = dt_velocity * inverse_mass[r, i]
+        fx = (below[4, i] + below[6, k]) + (above[0, k] + above[2, i])
+        fy = (below[5, i] + below[7, k]) + (above[1, k] + above[3, i])
+        v = vx[r, i] - c * fx
+        vx[r, i] = v
+        u[r, i] += dt * v
+        v = vy[r, i] - c * fy
+        vy[r, i] = v
+        w[r, i] += dt * v
