@@ -101,8 +101,7 @@ class PreparedSource(FrameSource):
         if self._transposed:
             image = image.T
         turned = image[:: -1 if self._flip_y else 1, :: -1 if self._flip_x else 1]
-        prepared: Image = np.ascontiguousarray(turned)
-        return prepared
+        return turned.copy()
 
 
 def open_experiment(experiment: Experiment) -> PreparedSource:
