@@ -13,6 +13,7 @@ from wrinklewave.config import Case, load_case
 from wrinklewave.materials import moduli
 
 ROOT = Path(__file__).parents[2]
+K_0, K_i = (2 * mu * 1.49 / (3 * 0.02) for mu in (44e3, 3.394e6))  # E/(3 (1 - 2 nu)), nu = 0.49
 ratios, shear_moduli = st.floats(-0.99, 0.4999), st.floats(1.0, 1e9)
 
 
@@ -36,17 +37,15 @@ def paper(*overrides: str) -> Case:
 @pytest.mark.parametrize(
     ("response", "K_inf", "K_instantaneous"),
     [
-        ("elastic-long-term", 2.1853333333e6, 2.1853333333e6),
-        ("elastic-instantaneous", 168.56866667e6, 168.56866667e6),
-        ("relaxing", 2.1853333333e6, 168.56866667e6),
+        ("elastic-long-term", K_0, K_0),
+        ("elastic-instantaneous", K_i, K_i),
+        ("relaxing", K_0, K_i),
     ],
 )
 def test_bulk_responses(response: str, K_inf: float, K_instantaneous: float) -> None:
     solid = moduli.substrate_moduli(paper(f"substrate.bulk_response={response}").substrate)
     assert (solid.K_inf, solid.K_instantaneous) == pytest.approx((K_inf, K_instantaneous), rel=1e-9)
     assert (solid.mu_inf, solid.mu_instantaneous) == pytest.approx((44e3, 3.394e6), rel=1e-12)
-    # K_i = (E_0 + E_1)/(3 (1 - 2 nu))
-    assert 2 * 3.394e6 * 1.49 / (3 * 0.02) == pytest.approx(168.56866667e6, rel=1e-9)
 
 
 def test_relaxing_bulk_keeps_poissons_ratio() -> None:
