@@ -1,0 +1,1 @@
+"""The paper's procedures, and the comparison with its numbers."""

@@ -1,0 +1,69 @@
+"""Tables for the terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from wrinklewave.experiments.paper_table import NO_NUMBER, NOT_REPRODUCED, REPRODUCED, Row
+from wrinklewave.report.formats import number, shown
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+MARKS = {REPRODUCED: "[green]✓[/green]", NOT_REPRODUCED: "[red]✗[/red]", NO_NUMBER: "[dim]·[/dim]"}
+
+
+def comparison_table(rows: Sequence[Row]) -> Table:
+    """The comparison with the paper: one column per bulk response, with number, ratio and verdict."""
+    from rich.table import Table
+
+    choices = bulk_choices(rows)
+    table = Table(title="Comparison with the paper", show_lines=True)
+    table.add_column("quantity", ratio=3)
+    table.add_column("paper", ratio=2)
+    for bulk in choices:
+        table.add_column(bulk, ratio=2)
+    table.add_column("remark", ratio=4)
+    for row in rows:
+        table.add_row(
+            row.quantity, f"{row.paper}\n[dim]{row.about}[/dim]", *_cells(row, choices), remarks(row)
+        )
+    return table
+
+
+def bulk_choices(rows: Sequence[Row]) -> list[str]:
+    """Bulk responses that the rows have results for, in their order."""
+    return list(dict.fromkeys(bulk for row in rows for bulk in row.results))
+
+
+def remarks(row: Row) -> str:
+    """Reasons of all choices that do not reproduce the row; each is named if they differ."""
+    reasons = {bulk: found.remark for bulk, found in row.results.items() if found.remark}
+    if len(set(reasons.values())) <= 1:
+        return next(iter(reasons.values()), "")
+    return "; ".join(f"{bulk}: {reason}" for bulk, reason in reasons.items())
+
+
+def summary_table(summary: Mapping[str, float | None], names: Sequence[str]) -> Table:
+    """Chosen scalar results with handy units."""
+    from rich.table import Table
+
+    table = Table(show_header=False, box=None)
+    for name in names:
+        label, value, unit = shown(name, summary.get(name))
+        table.add_row(label, f"{value} {unit}".strip())
+    return table
+
+
+def _cells(row: Row, choices: Sequence[str]) -> list[str]:
+    cells = []
+    for bulk in choices:
+        found = row.results.get(bulk)
+        if found is None:
+            cells.append("")
+            continue
+        ours = f"{number(found.ours)} {row.unit}".strip()
+        ratio = "" if found.ratio is None else f"\n[dim]ratio {found.ratio:.2f}[/dim]"
+        cells.append(f"{MARKS[found.verdict]} {ours}{ratio}")
+    return cells

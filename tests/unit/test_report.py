@@ -1,0 +1,123 @@
+"""The report is one page that needs nothing else."""
+
+from __future__ import annotations
+
+import io
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from wrinklewave.experiments.paper_table import paper_table
+from wrinklewave.report import ReportContext, summary_table, write
+from wrinklewave.report.formats import number, shown
+
+VOID = {"meta", "img", "br", "link", "input", "hr"}
+
+
+class _Balance(HTMLParser):
+    """Checks that every tag that is opened is closed, in order."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: object) -> None:
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture
+def context(tmp_path: Path) -> ReportContext:
+    picture = tmp_path / "fig_2c_displacement.png"
+    picture.write_bytes(b"\x89PNG not really")
+    time = np.linspace(0.0, 1e-3, 500)
+    return ReportContext(
+        title="impact <of a block>",
+        description="a & b",
+        outcome="ended at 5 ms",
+        summary={
+            "wavefront_speed_m_per_s": 61.234567,
+            "wrinkle_speed_m_per_s": None,
+            "outcome": "done",
+            "ok": True,
+        },
+        figures={"fig_2c_displacement": picture},
+        comparison=paper_table({"relaxing": {"wavefront_speed_m_per_s": 110.0}}),
+        history={"time_s": time, "external_work": 2 * time, "friction": 0 * time, "imbalance": 1e-3 * time},
+        warnings=["hourglass energy is 2 % of the internal energy"],
+        case='[case]\nname = "impact"\n',
+        versions={"wrinklewave": "0.1", "numpy": np.__version__},
+    )
+
+
+def test_report_is_self_contained_and_well_formed(context: ReportContext, tmp_path: Path) -> None:
+    html = write(tmp_path / "report.html", context).read_text(encoding="utf-8")
+    parser = _Balance()
+    parser.feed(html)
+    assert parser.open == []
+    assert not re.search(r"""(src|href)=["'](?!data:|#)""", html)
+    assert "@import" not in html
+    assert "url(" not in html
+    assert not list(tmp_path.glob("*.part"))
+
+
+def test_report_shows_what_it_was_given(context: ReportContext, tmp_path: Path) -> None:
+    html = write(tmp_path / "report.html", context).read_text(encoding="utf-8")
+    for text in (
+        "impact &lt;of a block&gt;",
+        "a &amp; b",
+        "61.23",
+        "data:image/png;base64,iVBORyBub3Qg",
+        "2 % of the",
+    ):
+        assert text in html, text
+    assert "not reproduced" in html
+    assert ">friction<" not in html
+    assert ">external work<" in html
+    assert "name = &#34;impact&#34;" in html
+
+
+def test_an_empty_report_has_no_empty_sections(tmp_path: Path) -> None:
+    html = write(tmp_path / "report.html", ReportContext(title="nothing")).read_text(encoding="utf-8")
+    assert "<h2>" not in html
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "expected"),
+    [
+        ("wavefront_speed_m_per_s", 60.04, ("wavefront speed", "60.04", "m/s")),
+        ("wrinkle_amplitude_max_m", 1.714e-4, ("wrinkle amplitude max", "0.1714", "mm")),
+        ("contact_time_s", 31e-6, ("contact time", "0.031", "ms")),
+        ("strain_rate_max_per_s", 560.0, ("strain rate max", "560", "1/s")),
+        ("element_updates_per_s", 4.2e7, ("element", "42", "million/s")),
+        ("hourglass_energy_share_max", 0.004, ("hourglass energy share max", "0.004", "")),
+        ("separation_time_s", None, ("separation time", "–", "ms")),
+    ],
+)
+def test_results_get_words_and_handy_units(
+    name: str, value: float | None, expected: tuple[str, str, str]
+) -> None:
+    assert shown(name, value) == expected
+
+
+def test_numbers_have_four_digits() -> None:
+    assert number(123456.0) == "1.235e+05"
+    assert number(0.0) == "0"
+
+
+def test_summary_table_prints_chosen_results() -> None:
+    from rich.console import Console
+
+    console = Console(width=80, record=True, file=io.StringIO())
+    console.print(
+        summary_table({"wavefront_speed_m_per_s": 60.0}, ["wavefront_speed_m_per_s", "separation_time_s"])
+    )
+    text = console.export_text()
+    assert "60 m/s" in text
+    assert "– ms" in text
