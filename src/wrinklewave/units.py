@@ -64,6 +64,7 @@ COMMON_UNITS: dict[str, tuple[Dimension, str]] = {
 }
 
 _QUANTITY = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)(?![\d.,_])\s*(.*?)\s*")
+_PREFIXES = {-9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 _SPELLINGS = str.maketrans({"µ": "u", "μ": "u", "³": "^3"})
 _BLANKS = re.compile(r"\s*([/^])\s*")
 
@@ -101,6 +102,27 @@ def parse(text: object, dimension: Dimension) -> float:
 def format_si(value: float, dimension: Dimension) -> str:
     """Return an SI value as text that :func:`parse` reads back to the same float."""
     return f"{value!r} {dimension.si}"
+
+
+def engineering(value: float | Decimal, unit: str, digits: int | None = 4) -> str:
+    """Return a value with an SI prefix where its unit takes one: ``131.1 kPa``, ``45.5 us``, ``0.125``.
+
+    Args:
+        value: in ``unit``; a ``Decimal`` keeps its own digits if ``digits`` is None.
+        unit: SI unit, "1" for a pure number.
+        digits: significant digits, None for all.
+    """
+    exponent = 0
+    if unit in ("m", "s", "Pa", "Hz") and value and math.isfinite(value):
+        exponent = min(max(3 * (Decimal(value).adjusted() // 3), -9), 9)
+    scaled = Decimal(value).scaleb(-exponent)
+    if digits is None:
+        text = f"{scaled:f}"
+    elif 1e3 <= abs(scaled) < 1e6:
+        text = f"{scaled:.0f}"
+    else:
+        text = f"{float(scaled):#.{digits}g}".rstrip(".")
+    return text if unit == "1" else f"{text} {_PREFIXES[exponent]}{unit}"
 
 
 def _factor(unit: str, dimension: Dimension) -> str:

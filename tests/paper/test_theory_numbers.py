@@ -10,9 +10,11 @@ from pathlib import Path
 import pytest
 
 from wrinklewave.config import Case, load_case
-from wrinklewave.theory.report import ROWS, Quantity, report
+from wrinklewave.theory import report as theory
+from wrinklewave.theory.report import Quantity, Row, report
 
 ROOT = Path(__file__).parents[2]
+ROWS = [row for rows in theory.ROWS.values() for row in rows]
 
 # quantity of the reference file -> names in the report, in the order of the file's values
 RECOMPUTED = {
@@ -84,8 +86,8 @@ def recomputed() -> dict[str, list[float]]:
 
 
 @pytest.mark.parametrize("row", [row for row in ROWS if row.paper], ids=lambda row: row.name)
-def test_digits_that_the_paper_prints(row: object, numbers: dict[str, Quantity]) -> None:
-    number = numbers[row.name]  # type: ignore[attr-defined]
+def test_digits_that_the_paper_prints(row: Row, numbers: dict[str, Quantity]) -> None:
+    number = numbers[row.name]
     assert number.paper is not None
     printed = Decimal(number.paper)
     assert Decimal(repr(number.value)).quantize(printed) == printed

@@ -23,6 +23,7 @@ class Quantity:
     """One closed-form number.
 
     Args:
+        group: heading under which it stands.
         name: what it is, in words; unique in a report.
         symbol: as in the literature.
         value: in ``unit``.
@@ -33,6 +34,7 @@ class Quantity:
         remark: where paper and formula differ, or what to mind.
     """
 
+    group: str
     name: str
     symbol: str
     value: float
@@ -59,16 +61,19 @@ class Row:
 def report(case: Case) -> list[Quantity]:
     """Return every closed-form number for a case; those that it lacks inputs for are left out."""
     constants, papers = Constants(case), is_papers(case)
-    found = []
-    for row in ROWS:
-        try:
-            value = float(row.compute(constants))
-        except NotGivenError:
-            continue
-        remark = "; ".join(text for text in (row.remark, row.paper_remark if papers else "") if text)
-        printed = row.paper if papers else None
-        found.append(Quantity(row.name, row.symbol, value, row.unit, row.formula, printed, remark))
-    return found
+    numbers = (_quantity(group, row, constants, papers) for group, rows in ROWS.items() for row in rows)
+    return [number for number in numbers if number is not None]
+
+
+def _quantity(group: str, row: Row, constants: Constants, papers: bool) -> Quantity | None:
+    """The number of a row; None where the case lacks an input for it."""
+    try:
+        value = float(row.compute(constants))
+    except NotGivenError:
+        return None
+    remark = "; ".join(text for text in (row.remark, row.paper_remark if papers else "") if text)
+    printed = row.paper if papers else None
+    return Quantity(group, row.name, row.symbol, value, row.unit, row.formula, printed, remark)
 
 
 def is_papers(case: Case) -> bool:
@@ -445,7 +450,14 @@ FILM = (
     ),
 )
 
-ROWS = (*MODULI, *SPEEDS, *SINE_WAVE, *TIMES, *IMPACT, *FILM)
+ROWS = {
+    "moduli": MODULI,
+    "wave speeds": SPEEDS,
+    "a sine wave of the loss frequency": SINE_WAVE,
+    "times": TIMES,
+    "impact": IMPACT,
+    "film": FILM,
+}
 
 
 def _on_layer(s: Constants) -> tuple[float, float]:

@@ -1,0 +1,5 @@
+"""``python -m wrinklewave``."""
+
+from wrinklewave.cli import main
+
+main()

@@ -1,0 +1,75 @@
+"""The command line: the workflow in verbs, one thin function each.
+
+To add a verb, add a module to ``cli/verbs/``, named as the verb with underscores for dashes, with a public
+function of the same name: its signature makes the arguments, its docstring the help. Nothing here changes.
+Import what is heavy (numpy, xarray, numba, pydantic, rich) inside the function: ``--help`` imports the modules
+of all verbs. Mistakes of a user are raised as :class:`wrinklewave.errors.InputError` and printed without a
+traceback.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from pkgutil import iter_modules
+from typing import Annotated
+
+import typer
+
+from wrinklewave import __version__
+from wrinklewave.cli import verbs
+from wrinklewave.errors import WrinklewaveError
+
+ORDER = ("simulate", "restart", "film", "inspect", "measure", "compare", "theory", "doctor", "cite")
+"""Verbs as a user meets them; others come after them."""
+
+
+def main() -> None:
+    """Entry point: run the verb; return 2 for a mistake in the input, 1 for a failure, 130 after Ctrl-C."""
+    try:
+        application()()
+    except WrinklewaveError as error:
+        _fail(str(error), error.exit_code)
+    except KeyboardInterrupt:
+        _fail("stopped", 130)
+    except OSError as error:  # no permission, no space, no such folder: the system's words name the file
+        _fail(str(error), 1)
+
+
+def application() -> typer.Typer:
+    """Return the application with every verb that there is a module for."""
+    app = typer.Typer(
+        no_args_is_help=True,
+        add_completion=False,
+        rich_markup_mode=None,  # rich would double the time that --help takes
+        pretty_exceptions_enable=False,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    app.callback()(_wrinklewave)
+    names = {module.name for module in iter_modules(verbs.__path__)}
+    for name in sorted(names, key=lambda name: (ORDER.index(name) if name in ORDER else len(ORDER), name)):
+        module = import_module(f"{verbs.__name__}.{name}")
+        app.command(name.replace("_", "-"))(getattr(module, name))
+    return app
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(f"wrinklewave {__version__}")
+        raise typer.Exit
+
+
+def _wrinklewave(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", is_eager=True, callback=_print_version, help="Print the version and leave."
+        ),
+    ] = False,
+) -> None:
+    """A laboratory for waves and wrinkles in soft layered materials: simulate, measure, compare."""
+
+
+def _fail(message: str, exit_code: int) -> None:
+    print(f"wrinklewave: {message}", file=sys.stderr)
+    sys.exit(exit_code)
