@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -33,17 +35,19 @@ def _use_full_vector_width() -> None:
         numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
 
 
-def _keep_kernels_apart() -> None:
-    """Cache compiled kernels under a digest of their sources: numba's own check misses changes in called functions."""
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return
+@cache
+def _kernel_cache(room: str) -> str:
+    """Folder of a room's compiled kernels, under a digest of all sources that its kernels call.
+
+    Numba's own check sees only the file that a kernel stands in, not those of the functions it calls.
+    """
     package = Path(__file__).parent
     sources = [Path(__file__)]
-    for room in ("materials", "dynamics", "imaging", "wrinkling"):
-        sources += sorted((package / room).rglob("*.py"))
+    for name in sorted({"materials", room}):
+        sources += sorted((package / name).rglob("*.py"))
     digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:16]
-    cache = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    numba.config.CACHE_DIR = str(cache / "wrinklewave" / f"kernels-{digest}")
+    folder = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    return str(folder / "wrinklewave" / f"{room}-{digest}")
 
 
 def _use_work_queue() -> None:
@@ -60,22 +64,31 @@ def _offer_noalias() -> dict[str, Any]:
 
 
 _use_full_vector_width()
-_keep_kernels_apart()
 _use_work_queue()
 
 _COMMON: dict[str, Any] = {"error_model": "numpy", "cache": True, "nogil": True}
 _NO_COUNTING: dict[str, Any] = _COMMON | {"_nrt": False}  # kernels allocate nothing; counting references costs a third
 _FAST: dict[str, Any] = _NO_COUNTING | {"fastmath": True}
 
-scalar = numba.njit(**_FAST, forceinline=True)
+
+def _compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    def compile_lazily(function: Callable[..., Any]) -> Any:
+        if "NUMBA_CACHE_DIR" not in os.environ:
+            numba.config.CACHE_DIR = _kernel_cache(function.__module__.split(".")[1])
+        return numba.njit(**options)(function)
+
+    return compile_lazily
+
+
+scalar = _compiler(**_FAST, forceinline=True)
 """For pure functions of scalars: inlined into the loops that call them, on the CPU and on a GPU."""
 
-vector = numba.njit(**_FAST, **_offer_noalias())
+vector = _compiler(**_FAST, **_offer_noalias())
 """For loops over elements or nodes. Array arguments must not overlap, except that a loop may read and write the
 same place of one array within one iteration."""
 
-serial = numba.njit(**_NO_COUNTING)
+serial = _compiler(**_NO_COUNTING)
 """For loops whose order matters, with strict floating point."""
 
-parallel = numba.njit(**_COMMON, parallel=True)
+parallel = _compiler(**_COMMON, parallel=True)
 """For functions that share rows of elements out to threads."""

@@ -1,0 +1,220 @@
+"""A model in time: from event to event, with the stable step re-estimated at each, and the energies followed."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, N_TOTALS, WORK
+from wrinklewave.dynamics.energy import (
+    BULK_VISCOUS,
+    HOURGLASS,
+    HOURGLASS_AMPLITUDE,
+    J_LEAST,
+    J_MOST,
+    N_COLUMNS,
+    SPRINGS,
+    STORED,
+    kinetic_energy,
+    survey,
+)
+from wrinklewave.dynamics.fields import FIELDS, element_fields
+from wrinklewave.dynamics.stable_step import PLACE, STEP, stable_step
+from wrinklewave.dynamics.step import advance
+from wrinklewave.errors import RunError
+from wrinklewave.materials.neo_hookean import J_MAX, J_MIN
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from wrinklewave.dynamics.model import Model
+
+HISTORY = (
+    "time_s",
+    "step",
+    "dt_s",
+    "kinetic_J_per_m",
+    "elastic_J_per_m",
+    "springs_J_per_m",
+    "viscous_work_J_per_m",
+    "bulk_viscosity_J_per_m",
+    "hourglass_J_per_m",
+    "contact_loss_J_per_m",
+    "friction_J_per_m",
+    "external_work_J_per_m",
+    "imbalance_J_per_m",
+    "x_boundary_m",
+    "y_boundary_m",
+    "contact_force_N_per_m",
+    "hourglass_amplitude",
+    "volume_ratio_min",
+    "volume_ratio_max",
+)
+"""Columns of the history. Energies are per metre of width, at mid-step; ``viscous_work`` is the whole work of the
+overstress, of which ``springs`` is stored still and the rest dissipated."""
+
+SMALLEST_STEP = 1e-3
+"""A run stops when the stable step falls below this fraction of the first: elements are collapsing."""
+
+
+@dataclass(frozen=True)
+class Event:
+    """A time that the simulation has reached exactly."""
+
+    index: int
+    time: float
+
+
+@dataclass(eq=False)
+class Simulation:
+    """A model that runs through ``events`` (increasing times [s], the first one 0).
+
+    Everything that a restart needs is in ``model.arrays``, ``model.memory`` and the fields below.
+    """
+
+    model: Model
+    events: NDArray[np.float64]
+    safety: float = 0.9
+    history_interval: float = 2e-6
+    next_event: int = 0
+    step: int = 0
+    dt: float = 0.0
+    first_dt: float = 0.0
+    totals: NDArray[np.float64] = field(default_factory=lambda: np.zeros(N_TOTALS))
+    work: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    power: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    power_time: float = 0.0
+    history: list[tuple[float, ...]] = field(default_factory=list)
+    stepping_seconds: float = 0.0
+
+    def __post_init__(self) -> None:
+        rows = self.model.mesh.shape[0]
+        self._steps = np.zeros((rows, 2))
+        self._survey = np.zeros((rows, N_COLUMNS))
+
+    @property
+    def time(self) -> float:
+        """The last event reached [s]."""
+        return float(self.events[max(self.next_event - 1, 0)])
+
+    @property
+    def updates_per_second(self) -> float:
+        """Element updates per second of the stepping loop so far."""
+        return self.step * self.model.mesh.n_elements / self.stepping_seconds if self.stepping_seconds else 0.0
+
+    @property
+    def imbalance(self) -> float:
+        """Energy imbalance now, over the largest external work so far."""
+        if not self.history:
+            return 0.0
+        work, imbalance = HISTORY.index("external_work_J_per_m"), HISTORY.index("imbalance_J_per_m")
+        largest = max(abs(row[work]) for row in self.history)
+        return abs(self.history[-1][imbalance]) / largest if largest > 0 else 0.0
+
+    def run(self) -> Iterator[Event]:
+        """Go from event to event; yields each when it is reached, the state at rest first.
+
+        Raises:
+            RunError: if an element inverts, the state stops being finite, or the stable step collapses; it names the
+                element, its place and the time.
+        """
+        while self.next_event < self.events.size:
+            if self.next_event > 0:
+                self._go(self.events[self.next_event - 1], self.events[self.next_event])
+            self.next_event += 1
+            yield Event(self.next_event - 1, self.time)
+
+    def fields(self) -> NDArray[np.float64]:
+        """Element fields now, shape [len(FIELDS), n_rows, n_columns], see :mod:`wrinklewave.dynamics.fields`."""
+        out = np.zeros((len(FIELDS), *self.model.mesh.shape))
+        element_fields(self.model.arrays, self.model.memory_rows, self.model.terms, out)
+        return out
+
+    def stable_step(self) -> float:
+        """Largest stable step of the present state [s].
+
+        Raises:
+            RunError: as :meth:`run`.
+        """
+        m = self.model
+        stable_step(m.arrays, m.memory_rows, m.terms, m.density, self._steps)
+        row = int(np.argmin(self._steps[:, STEP]))  # the first NaN, if there is one
+        dt = float(self._steps[row, STEP])
+        self.first_dt = self.first_dt or dt
+        if not dt > SMALLEST_STEP * self.first_dt:
+            raise self._failure(row, int(self._steps[row, PLACE]), dt)
+        return dt
+
+    def _go(self, start: float, stop: float) -> None:
+        n = int(np.ceil((stop - start) / (self.safety * self.stable_step())))
+        dt = float(stop - start) / n
+        group = max(1, int(self.history_interval / dt))
+        for first in range(0, n, group):
+            count = min(group, n - first)
+            self._advance(count, float(start) + first * dt, dt)
+            self._record(float(start) + (first + count) * dt, dt)
+
+    def _advance(self, count: int, t: float, dt: float) -> None:
+        m = self.model
+        begin = time.perf_counter()
+        advance(count, t, self.dt, dt, m.arrays, m.memory_rows, m.terms, m.boundary, self.totals)
+        self.stepping_seconds += time.perf_counter() - begin
+        self.step += count
+        self.dt = dt
+
+    def _record(self, t: float, dt: float) -> None:
+        m, a = self.model, self.model.arrays
+        survey(dt, a, m.memory_rows, m.terms, self._survey)
+        s = self._survey.sum(axis=0)
+        power, middle = s[[2, BULK_VISCOUS, HOURGLASS]], t - dt / 2
+        self.work += 0.5 * (self.power + power) * (middle - self.power_time)
+        self.power, self.power_time = power, middle
+        kinetic = kinetic_energy(a.inverse_mass, a.vx, a.vy)
+        spent = kinetic + s[STORED] + self.work.sum() + self.totals[CONTACT_LOSS] + self.totals[FRICTION_LOSS]
+        least, most = float(self._survey[:, J_LEAST].min()), float(self._survey[:, J_MOST].max())
+        self.history.append(
+            (
+                t,
+                self.step,
+                dt,
+                kinetic,
+                s[STORED],
+                s[SPRINGS],
+                *self.work,
+                self.totals[CONTACT_LOSS],
+                self.totals[FRICTION_LOSS],
+                self.totals[WORK],
+                spent - self.totals[WORK],
+                a.X[-1, 0] + a.u[-1, 0],
+                a.Y[-1, 0] + a.w[-1, 0],
+                self.totals[FORCE],
+                float(self._survey[:, HOURGLASS_AMPLITUDE].max()),
+                least,
+                most,
+            )
+        )
+        if not (least >= J_MIN and most <= J_MAX):
+            self.stable_step()  # names an inverted element, if that is the cause
+            row = int(np.argmin(self._survey[:, J_LEAST])) if least < J_MIN else int(np.argmax(self._survey[:, J_MOST]))
+            raise RunError(
+                f"at t = {t * 1e3:.4f} ms (step {self.step}) the volume ratio in element row {row} is "
+                f"{least:.3g} to {most:.3g}, outside {J_MIN} to {J_MAX}\n"
+                "  to mend:  a finer mesh there, a longer rise time, or more bulk viscosity"
+            )
+
+    def _failure(self, row: int, column: int, dt: float) -> RunError:
+        X, Y = self.model.arrays.X, self.model.arrays.Y
+        column = max(column, 0)
+        place = f"X = {X[row, column] * 1e3:.3f} mm, Y = {Y[row, column] * 1e3:.3f} mm"
+        what = "the state is not finite" if np.isnan(dt) else "the stable step has collapsed: an element is inverted or nearly so"
+        return RunError(
+            f"{what} (element row {row}, column {column}, at {place}; t = {self.time * 1e3:.4f} ms, step {self.step}, "
+            f"stable step {dt:.3g} s)\n"
+            "  to mend:  a smaller solver.safety, a longer rise time, a coarser mesh at a clamped struck corner "
+            "(no converged answer exists there), or boundaries.wall = true"
+        )

@@ -1,0 +1,30 @@
+"""Ctrl-C and termination as a wish that a long computation asks for at its own convenience."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+
+@contextmanager
+def interruptible() -> Iterator[Callable[[], bool]]:
+    """Yield a function that tells whether an interrupt has come; a second one acts at once, as it always does."""
+    if threading.current_thread() is not threading.main_thread():
+        yield lambda: False
+        return
+    wished = False
+
+    def note(signum: int, frame: FrameType | None) -> None:
+        nonlocal wished
+        wished = True
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    old = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield lambda: wished
+    finally:
+        for number, handler in old.items():
+            signal.signal(number, handler)

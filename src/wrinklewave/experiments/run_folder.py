@@ -1,0 +1,106 @@
+"""The folder of a run: what lies where, and how it is written."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wrinklewave import surface
+from wrinklewave.errors import InputError
+from wrinklewave.experiments.vtkhdf import write_vtkhdf
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wrinklewave.config import Case
+    from wrinklewave.experiments.simulate import Run
+    from wrinklewave.mesh.block import GridMesh
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """Files of a run in ``path``."""
+
+    path: Path
+
+    @property
+    def checkpoint(self) -> Path:
+        return self.path / "checkpoint.h5"
+
+    @property
+    def frames(self) -> Path:
+        return self.path / ".frames"
+
+    @classmethod
+    def prepare(cls, path: Path, case: Case, *, resume: bool, overwrite: bool) -> RunFolder:
+        """Make the folder ready for a run, and put the resolved case there.
+
+        Raises:
+            InputError: if it holds a run already and neither ``resume`` nor ``overwrite`` says what to do.
+        """
+        folder = cls(path)
+        if path.exists() and not path.is_dir():
+            raise InputError("is a file", file=path, expected="a folder for the results")
+        if (path / "case.toml").exists() and not (resume or overwrite):
+            raise InputError(
+                "holds a run already",
+                file=path,
+                cure="--resume goes on with it, --overwrite replaces it, --out takes another folder",
+            )
+        path.mkdir(parents=True, exist_ok=True)
+        if not resume:
+            folder._clear()
+        write_text(path / "case.toml", case.to_toml())
+        return folder
+
+    def describe_checkpoint(self) -> str:
+        """Where a run could go on from."""
+        if self.checkpoint.exists():
+            return f"last checkpoint: {self.checkpoint}"
+        return "no checkpoint had been written yet (solver.checkpoint_interval)"
+
+    def write_unfinished(self, run: Run) -> None:
+        """History and summary of a run that was interrupted or failed."""
+        write_history(self.path / "history.csv", run.history)
+        write_json(self.path / "summary.json", run.summary)
+
+    def write_finished(self, run: Run, mesh: GridMesh) -> None:
+        """Everything but figures and report; then what only a restart needs goes."""
+        assert run.surface is not None  # a finished run has one
+        surface.write(run.surface, self.path / "surface.nc")
+        write_vtkhdf(self.path / "fields.vtkhdf", mesh, run.fields)
+        self.write_unfinished(run)
+        self.checkpoint.unlink(missing_ok=True)
+
+    def _clear(self) -> None:
+        self.checkpoint.unlink(missing_ok=True)
+        (self.path / "summary.json").unlink(missing_ok=True)
+        for frame in self.frames.glob("*"):
+            frame.unlink()
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a file that appears whole or not at all."""
+    partial = path.with_name(path.name + ".part")
+    partial.write_text(text, encoding="utf-8")
+    partial.replace(path)
+
+
+def write_json(path: Path, content: Any) -> None:
+    """Write JSON for people: indented, in the order given."""
+    write_text(path, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+
+
+def write_history(path: Path, history: dict[str, NDArray[np.float64]]) -> None:
+    """Write a table of columns as CSV, with all digits."""
+    partial = path.with_name(path.name + ".part")
+    with partial.open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(history)
+        writer.writerows(zip(*(column.tolist() for column in history.values()), strict=True))
+    partial.replace(path)

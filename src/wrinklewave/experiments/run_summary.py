@@ -1,0 +1,58 @@
+"""Scalars that every run reports beside its analysis: energies, compressibility, versions."""
+
+from __future__ import annotations
+
+import platform
+from importlib.metadata import version
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wrinklewave._version import __version__
+from wrinklewave.materials.moduli import substrate_moduli
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from wrinklewave.config import Case
+
+NOTICEABLE = 1e-3
+"""Shares of the internal energy are taken once it is this fraction of its largest value."""
+
+
+def energy_scalars(history: dict[str, NDArray[np.float64]]) -> dict[str, float]:
+    """Energy balance and hourglass control over the whole run."""
+    if not history["time_s"].size:
+        return {}
+    work = float(np.abs(history["external_work_J_per_m"]).max())
+    internal = history["elastic_J_per_m"] + history["viscous_work_J_per_m"]
+    noticeable = internal > NOTICEABLE * internal.max()
+    share = np.abs(history["hourglass_J_per_m"][noticeable]) / internal[noticeable]
+    kinetic = history["kinetic_J_per_m"][noticeable] / internal[noticeable]
+    return {
+        "external_work_J_per_m": float(history["external_work_J_per_m"][-1]),
+        "energy_imbalance_max": float(np.abs(history["imbalance_J_per_m"]).max()) / work if work else 0.0,
+        "hourglass_energy_share_max": float(share.max()) if share.size else 0.0,
+        "hourglass_amplitude_max": float(history["hourglass_amplitude"].max()),
+        "kinetic_energy_share_end": float(kinetic[-1]) if kinetic.size else 0.0,
+        "volume_ratio_min": float(history["volume_ratio_min"].min()),
+        "volume_ratio_max": float(history["volume_ratio_max"].max()),
+        "contact_force_max_N_per_m": float(history["contact_force_N_per_m"].max()),
+        "time_step_min_s": float(history["dt_s"].min()),
+    }
+
+
+def material_scalars(case: Case) -> dict[str, float]:
+    """How compressible the substrate is: a number that nobody should have to guess."""
+    substrate = substrate_moduli(case.substrate)
+    return {
+        "bulk_over_shear_long_term": substrate.K_inf / substrate.mu_inf,
+        "bulk_over_shear_instantaneous": substrate.K_instantaneous / substrate.mu_instantaneous,
+        "poisson_ratio_instantaneous": substrate.nu_instantaneous,
+    }
+
+
+def versions() -> dict[str, str]:
+    """What made the result."""
+    packages = {name: version(name) for name in ("numpy", "numba", "scipy", "xarray", "h5py")}
+    return {"wrinklewave": __version__, "python": platform.python_version(), **packages, "machine": platform.machine()}

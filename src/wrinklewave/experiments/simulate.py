@@ -1,0 +1,248 @@
+"""The simulated impact, from a case to a run: fields, surface motion, energies, analysis."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from enum import Enum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wrinklewave.analysis.analyse import analyse
+from wrinklewave.config import Case, load_case
+from wrinklewave.dynamics.checkpoint import read_checkpoint, write_checkpoint
+from wrinklewave.dynamics.model import build_model
+from wrinklewave.dynamics.simulation import HISTORY, Simulation
+from wrinklewave.errors import InputError, RunError
+from wrinklewave.experiments.interruption import interruptible
+from wrinklewave.experiments.recording import FieldStore, SurfaceRecorder
+from wrinklewave.experiments.run_folder import RunFolder
+from wrinklewave.experiments.simulated_surface import simulated_surface
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import NDArray
+
+    from wrinklewave.analysis.results import Analysis
+
+
+class Outcome(Enum):
+    """How a run ended; the value is the message."""
+
+    FINISHED = "finished"
+    INTERRUPTED = "interrupted; go on with --resume"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class Progress:
+    """Where a simulation is.
+
+    Args:
+        time: simulated [s].
+        end_time: of the simulation [s].
+        step: steps taken.
+        updates_per_second: element updates per second of the stepping loop.
+        imbalance: energy imbalance over external work.
+        seconds: wall-clock time since the run was started or resumed.
+        seconds_left: estimated.
+    """
+
+    time: float
+    end_time: float
+    step: int
+    updates_per_second: float
+    imbalance: float
+    seconds: float
+    seconds_left: float
+
+
+@dataclass(eq=False)
+class Run:
+    """A simulation that has ended.
+
+    Args:
+        case: as resolved.
+        outcome: how it ended.
+        history: energies and motion of the struck end against time, columns by name.
+        fields: field frames.
+        summary: scalar results with units in their names.
+        surface: surface motion; None if the run did not finish.
+        analysis: of the surface motion; None if the run did not finish.
+        folder: where the results are, if anywhere.
+    """
+
+    case: Case
+    outcome: Outcome
+    history: dict[str, NDArray[np.float64]]
+    fields: FieldStore
+    summary: dict[str, Any] = field(default_factory=dict)
+    surface: xr.Dataset | None = None
+    analysis: Analysis | None = None
+    folder: Path | None = None
+
+
+def simulate(
+    case: Case | str | Path,
+    *,
+    out: str | Path | None = None,
+    threads: int | None = None,
+    overrides: Sequence[str] = (),
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Callable[[Progress], None] = lambda state: None,
+) -> Run:
+    """Simulate a case and analyse its surface motion.
+
+    Args:
+        case: a case, or the path of a case file.
+        out: folder for checkpoints and results; without it everything stays in memory.
+        threads: default all cores that this process may use. Results do not depend on it.
+        overrides: ``"key=value"`` on top of the case file.
+        resume: go on from the checkpoint in ``out``, if there is one.
+        overwrite: replace an earlier run in ``out``.
+        progress: called now and then.
+
+    Raises:
+        InputError: if the case, or what ``out`` holds, does not allow the run.
+        RunError: if the simulation cannot go on; what was computed is kept in ``out``.
+    """
+    case = _resolved(case, overrides)
+    threads = _use_threads(threads)
+    folder = RunFolder.prepare(Path(out), case, resume=resume, overwrite=overwrite) if out else None
+    simulation, recorder, store = _start(case, threads, folder, resume)
+    begin = time.perf_counter()
+    try:
+        outcome = _run(case, simulation, recorder, store, folder, progress)
+    except RunError as error:
+        run = Run(case, Outcome.FAILED, _history(simulation), store, folder=folder and folder.path)
+        run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin) | {"message": str(error)}
+        if folder:
+            folder.write_unfinished(run)
+            raise RunError(f"{error}\n  {folder.describe_checkpoint()}") from error
+        raise
+    run = Run(case, outcome, _history(simulation), store, folder=folder and folder.path)
+    if outcome is Outcome.FINISHED:
+        run.surface = simulated_surface(case, simulation.model.mesh.X[-1], recorder.to_record())
+        run.analysis = analyse(run.surface, case.analysis)
+    run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin)
+    if folder:
+        folder.write_finished(run, simulation.model.mesh) if run.surface is not None else folder.write_unfinished(run)
+    return run
+
+
+def _resolved(case: Case | str | Path, overrides: Sequence[str]) -> Case:
+    if not isinstance(case, Case):
+        return load_case(case, overrides)
+    return case.overridden(*overrides) if overrides else case
+
+
+def _use_threads(threads: int | None) -> int:
+    import numba
+
+    available = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1024, numba.config.NUMBA_NUM_THREADS)
+    if threads is not None and not 1 <= threads <= available:
+        raise InputError(
+            f"{threads} threads", key="threads", expected=f"1 to {available}, the cores that this process may use"
+        )
+    threads = threads or available
+    numba.set_num_threads(threads)
+    return threads
+
+
+def output_times(interval: float, end: float) -> NDArray[np.float64]:
+    """0, interval, ... up to and including ``end`` [s]."""
+    return np.append(np.arange(0.0, end - interval * 1e-6, interval), end)
+
+
+def _start(
+    case: Case, threads: int, folder: RunFolder | None, resume: bool
+) -> tuple[Simulation, SurfaceRecorder, FieldStore]:
+    end = case.solver.end_time
+    surface, fields = output_times(case.output.surface_interval, end), output_times(case.output.field_interval, end)
+    events = np.unique(np.round(np.concatenate([surface, fields]), 12))
+    simulation = Simulation(
+        build_model(case, threads=threads),
+        events,
+        safety=case.solver.safety,
+        history_interval=case.output.history_interval,
+    )
+    recorder = SurfaceRecorder(case.wrinkles.averaging_depth)
+    store = FieldStore(folder.frames if folder else None)
+    if folder and resume and folder.checkpoint.exists():
+        recorder.restore(read_checkpoint(folder.checkpoint, simulation, case.to_toml()))
+        done = int(np.isin(simulation.events[: simulation.next_event], np.round(fields, 12)).sum())
+        store.forget_from(done)
+    return simulation, recorder, store
+
+
+def _run(
+    case: Case,
+    simulation: Simulation,
+    recorder: SurfaceRecorder,
+    store: FieldStore,
+    folder: RunFolder | None,
+    progress: Callable[[Progress], None],
+) -> Outcome:
+    end = case.solver.end_time
+    surface_times = set(np.round(output_times(case.output.surface_interval, end), 12))
+    field_times = np.round(output_times(case.output.field_interval, end), 12)
+    begin = saved = time.perf_counter()
+    start = simulation.time
+    with interruptible() as wished:
+        for event in simulation.run():
+            fields = simulation.fields()
+            if event.time in surface_times:
+                recorder.record(simulation, fields)
+            if event.time in field_times:
+                store.add(int(np.searchsorted(field_times, event.time)), simulation, fields)
+            now = time.perf_counter()
+            progress(_progress(simulation, start, now - begin))
+            due = now - saved > case.solver.checkpoint_interval or wished()
+            if folder and due:
+                write_checkpoint(folder.checkpoint, simulation, recorder.to_record(), case.to_toml())
+                saved = now
+            if wished():
+                return Outcome.INTERRUPTED
+    return Outcome.FINISHED
+
+
+def _progress(simulation: Simulation, start: float, seconds: float) -> Progress:
+    end, now = float(simulation.events[-1]), simulation.time
+    left = seconds * (end - now) / (now - start) if now > start else float("nan")
+    return Progress(now, end, simulation.step, simulation.updates_per_second, simulation.imbalance, seconds, left)
+
+
+def _history(simulation: Simulation) -> dict[str, NDArray[np.float64]]:
+    columns = np.array(simulation.history, dtype=float).reshape(-1, len(HISTORY))
+    return dict(zip(HISTORY, columns.T, strict=True))
+
+
+def run_summary(run: Run, simulation: Simulation, threads: int, seconds: float) -> dict[str, Any]:
+    """Scalar results of a run, with units in their names; the analysis' own among them."""
+    from wrinklewave.experiments.run_summary import energy_scalars, material_scalars, versions
+
+    summary: dict[str, Any] = {
+        "name": run.case.name,
+        "outcome": run.outcome.name.lower(),
+        "message": run.outcome.value,
+        "wrinkle_model": run.case.wrinkles.model,
+        "bulk_response": run.case.substrate.bulk_response,
+    }
+    if run.analysis is not None:
+        summary |= run.analysis.summary
+    rows, columns = simulation.model.mesh.shape
+    return summary | energy_scalars(run.history) | material_scalars(run.case) | {
+        "elements": rows * columns,
+        "steps": simulation.step,
+        "simulated_time_s": simulation.time,
+        "threads": threads,
+        "element_updates_per_s": simulation.updates_per_second,
+        "stepping_time_s": simulation.stepping_seconds,
+        "wall_time_s": seconds,
+        "versions": versions(),
+    }

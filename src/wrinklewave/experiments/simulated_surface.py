@@ -1,0 +1,82 @@
+"""From recorded surface nodes to a surface motion, with the wrinkles that the chosen model puts on it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wrinklewave._version import __version__
+from wrinklewave.laboratory_frame import Array
+from wrinklewave.materials.moduli import plane_strain_modulus, substrate_moduli, youngs_modulus
+from wrinklewave.surface import surface_motion
+from wrinklewave.wrinkling.profile import smooth_surface, wrinkled_surface
+from wrinklewave.wrinkling.quasi_static import wrinkle_amplitude
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from wrinklewave.config import Case
+    from wrinklewave.dynamics.checkpoint import Record
+
+
+def simulated_surface(case: Case, X: Array, record: Record) -> xr.Dataset:
+    """The surface motion of a simulation.
+
+    Args:
+        case: that was simulated.
+        X: undeformed positions of the surface nodes [m], shape [n_points].
+        record: what the surface recorder gathered.
+    """
+    recorded = dict(record.arrays)
+    time = recorded.pop("time")
+    x_p, y_p = recorded["x_p"], recorded["y_p"]
+    n = round(case.block.length / case.output.pixel_size)
+    x = np.linspace(0.0, case.block.length, n + 1)
+    x_boundary = x_p[:, 0]
+    rest = case.block.height / 2
+    amplitude = model_amplitude(case, time, recorded["strain_xx"])
+    extra: dict[str, Any] = {}
+    if amplitude is None:
+        y = smooth_surface(X, x_p, y_p, x=x, x_boundary=x_boundary)
+    else:
+        assert case.film is not None  # a case with a wrinkling model has a film
+        y, y_smooth = wrinkled_surface(
+            X, x_p, y_p, amplitude, wavelength=case.film.critical_wavelength, x=x, x_boundary=x_boundary
+        )
+        extra = {"amplitude": amplitude, "y_smooth": y_smooth, "u_y_smooth": y_smooth - rest}
+    return surface_motion(
+        time=time, x=x, X=X, y=y, u_y=y - rest, x_boundary=x_boundary, attrs=_attributes(case), **recorded, **extra
+    )
+
+
+def model_amplitude(case: Case, time: Array, strain: Array) -> Array | None:
+    """Wrinkle amplitude [m] of the case's model, shape [n_times, n_points]; None if no model adds wrinkles."""
+    if case.wrinkles.model == "quasi-static":
+        assert case.film is not None
+        return wrinkle_amplitude(
+            strain,
+            critical_strain=case.film.critical_strain,
+            critical_wavelength=case.film.critical_wavelength,
+        )
+    return None
+
+
+def _attributes(case: Case) -> dict[str, Any]:
+    substrate = substrate_moduli(case.substrate)
+    E_0 = youngs_modulus(substrate.mu_inf, substrate.nu_inf)
+    attributes = {
+        "kind": "simulation",
+        "name": case.name,
+        "length": case.block.length,
+        "height": case.block.height,
+        "wrinkle_model": case.wrinkles.model,
+        "bulk_response": case.substrate.bulk_response,
+        "plane_strain_modulus": plane_strain_modulus(E_0, substrate.nu_inf),
+        "stop_distance": getattr(case.drive, "stop_distance", None),
+        "critical_strain": case.film.critical_strain if case.film else None,
+        "critical_wavelength": case.film.critical_wavelength if case.film else None,
+        "wrinklewave_version": __version__,
+        "case": case.to_toml(),
+    }
+    return {name: value for name, value in attributes.items() if value is not None}
