@@ -135,3 +135,36 @@ def test_any_valid_number_survives(length: float, nu: float) -> None:
     assert isinstance(case.drive, StrikerDrive)
     assert math.isclose(case.drive.velocity, length, rel_tol=0)
     assert case_from_text(case.to_toml()) == case
+
+
+DRIVES = {
+    "end-motion": 'velocity = "10 m/s"\nstop_distance = "6.3 mm"\novershoot = "9 mm"\novershoot_time = "2 ms"\n'
+    'smoothing = "0.1 ms"\ntransverse = "linear"',
+    "compression": 'strain = 0.1\nduration = "0.4 ms"\nunload = true',
+    "velocity-step": 'velocity = "1 mm/s"',
+}
+IMPERFECTIONS = {
+    "sinusoidal": 'amplitude = "10 um"\nwavelength = "2 mm"',
+    "random": 'amplitude = "10 um"\nwavelengths = ["1 mm", "4 mm"]\nseed = 7',
+    "bump": 'amplitude = "10 um"\nposition = "20 mm"\nwidth = "1 mm"',
+}
+
+
+@pytest.mark.parametrize("kind", DRIVES)
+def test_every_kind_of_drive(kind: str) -> None:
+    before, rest = SMALLEST.split("[drive]")
+    solver = rest[rest.index("[solver]") :]
+    case = case_from_text(f'{before}[drive]\nkind = "{kind}"\n{DRIVES[kind]}\n{solver}')
+    assert case.drive.kind == kind
+    assert case_from_text(case.to_toml()) == case
+
+
+@pytest.mark.parametrize("kind", IMPERFECTIONS)
+def test_every_kind_of_imperfection(kind: str) -> None:
+    film = '[film]\nthickness = "0.1 mm"\nshear_modulus = "2 MPa"\n[[film.prony]]\nshear_modulus = "1 MPa"\n'
+    film += f'relaxation_time = "90 us"\n[film.imperfection]\nkind = "{kind}"\n{IMPERFECTIONS[kind]}\n'
+    case = case_from_text(SMALLEST + film)
+    assert case.film is not None
+    assert case.film.imperfection is not None
+    assert case.film.imperfection.kind == kind
+    assert case_from_text(case.to_toml()) == case

@@ -2,8 +2,8 @@
 
 To add a verb, add a module to ``cli/verbs/``, named as the verb with underscores for dashes, with a public
 function of the same name: its signature makes the arguments, its docstring the help. Nothing here changes.
-Import what is heavy (numpy, xarray, numba, pydantic, rich) inside the function: ``--help`` imports the modules
-of all verbs. Mistakes of a user are raised as :class:`wrinklewave.errors.InputError` and printed without a
+Import what is heavy (numpy, xarray, numba, pydantic, rich) inside the function: ``--help`` imports the module
+of every verb. Mistakes of a user are raised as :class:`wrinklewave.errors.InputError` and printed without a
 traceback.
 """
 
