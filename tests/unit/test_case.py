@@ -138,8 +138,8 @@ def test_any_valid_number_survives(length: float, nu: float) -> None:
 
 
 DRIVES = {
-    "end-motion": 'velocity = "10 m/s"\nstop_distance = "6.3 mm"\novershoot = "9 mm"\novershoot_time = "2 ms"\n'
-    'smoothing = "0.1 ms"\ntransverse = "linear"',
+    "end-motion": 'velocity = "10 m/s"\nstop_distance = "6.3 mm"\novershoot = "9 mm"\n'
+    'overshoot_time = "2 ms"\nsmoothing = "0.1 ms"\ntransverse = "linear"',
     "compression": 'strain = 0.1\nduration = "0.4 ms"\nunload = true',
     "velocity-step": 'velocity = "1 mm/s"',
 }

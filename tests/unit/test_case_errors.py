@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -217,3 +218,50 @@ def test_profile_columns(tmp_path: Path) -> None:
     (tmp_path / "rough.csv").write_text("x_m,height_m\n0,1e-6\n0.05,2e-6\n")
     profile = read_profile(tmp_path / "rough.csv")
     assert profile.height.tolist() == [1e-6, 2e-6]
+
+
+ODD = (
+    "-1",
+    "0",
+    "1e308",
+    "1e400",
+    "true",
+    "nothing",
+    '""',
+    "[]",
+    "[1, [2, {a = 1}]]",
+    "{}",
+    "2024-01-01",
+    "",
+)
+ODD_QUANTITIES = ("1e400 m", "1e-400 s", "1e308 Pa", "1 m/s", "1 Pa", "1e9 Hz", "1e-9 kg/m^3", "0 s", "0 m")
+
+
+def keys_of(table: dict[str, object], path: str = "") -> Iterator[str]:
+    """Dotted keys of every value, section and list entry."""
+    for name, value in table.items():
+        key = f"{path}{name}"
+        yield key
+        if isinstance(value, dict):
+            yield from keys_of(value, f"{key}.")
+        if isinstance(value, list):
+            yield from keys_of({str(number): entry for number, entry in enumerate(value)}, f"{key}.")
+
+
+def test_whatever_is_written_is_read_or_explained(tmp_path: Path) -> None:
+    """Each key of the resolved case, entries and sections too, set to each odd value: a case or an InputError."""
+    file = tmp_path / "case.toml"
+    file.write_text(GOOD)
+    file.write_text(load_case(file).to_toml())
+    keys = list(keys_of(tomllib.loads(file.read_text())))
+    refusals = [refusal(file, f"{key}={odd}") for key in keys for odd in (*ODD, *ODD_QUANTITIES)]
+    assert len([text for text in refusals if text]) > 1000
+
+
+def refusal(file: Path, override: str) -> str:
+    """The message of the error; nothing if the case is right."""
+    try:
+        load_case(file, [override])
+    except InputError as error:
+        return str(error)
+    return ""
