@@ -113,13 +113,13 @@ def threading() -> Threading:
     import llvmlite.binding as llvm
     import numba
 
-    import wrinklewave._jit  # noqa: F401  sets the options
+    from wrinklewave import _jit  # sets the options as well
 
     config: Any = numba.config  # its attributes are made when it is imported
     features = config.CPU_FEATURES or llvm.get_host_cpu_features().flatten()
     wide = "+avx512f" in features and "-prefer-256-bit" in features
     width = 512 if wide else 256 if "+avx2" in features else 128
-    cache = config.CACHE_DIR or "beside each module"
+    cache = os.environ.get("NUMBA_CACHE_DIR") or str(Path(_jit._kernel_cache("dynamics")).parent)
     return Threading(config.THREADING_LAYER, config.NUMBA_NUM_THREADS, width, cache)
 
 

@@ -249,7 +249,7 @@ def keys_of(table: dict[str, object], path: str = "") -> Iterator[str]:
 
 
 def test_whatever_is_written_is_read_or_explained(tmp_path: Path) -> None:
-    """Each key of the resolved case, entries and sections too, set to each odd value: a case or an InputError."""
+    """Each key of the resolved case, entries and sections too, set to each odd value: a case or an error."""
     file = tmp_path / "case.toml"
     file.write_text(GOOD)
     file.write_text(load_case(file).to_toml())
