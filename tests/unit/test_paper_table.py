@@ -103,7 +103,7 @@ def test_theory_of_the_paper_agrees_to_the_printed_digits() -> None:
     ],
 )
 def test_theory_is_compared_digit_by_digit(value: float, printed: str, verdict: str) -> None:
-    quantity = Quantity("speed", "c", value, "m/s", "", printed, "a remark")
+    quantity = Quantity("speeds", "speed", "c", value, "m/s", "", printed, "a remark")
     found = _row(paper_table({}, {"": [quantity]}), "speed c").results[""]
     assert found.verdict == verdict
     assert found.remark == ("" if verdict == REPRODUCED else "a remark")

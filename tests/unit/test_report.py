@@ -49,7 +49,7 @@ def context(tmp_path: Path) -> ReportContext:
         },
         figures={"fig_2c_displacement": picture},
         comparison=paper_table({"relaxing": {"wavefront_speed_m_per_s": 110.0}}),
-        history={"time_s": time, "external_work": 2 * time, "friction": 0 * time, "imbalance": 1e-3 * time},
+        history={"time_s": time, "external_work_J_per_m": 2 * time, "friction_J_per_m": 0 * time, "imbalance_J_per_m": 1e-3 * time},
         warnings=["hourglass energy is 2 % of the internal energy"],
         case='[case]\nname = "impact"\n',
         versions={"wrinklewave": "0.1", "numpy": np.__version__},
@@ -78,8 +78,8 @@ def test_report_shows_what_it_was_given(context: ReportContext, tmp_path: Path) 
     ):
         assert text in html, text
     assert "not reproduced" in html
-    assert ">friction<" not in html
-    assert ">external work<" in html
+    assert ">friction J/m<" not in html
+    assert ">external work J/m<" in html
     assert "name = &#34;impact&#34;" in html
 
 

@@ -42,7 +42,7 @@ def analyse(surface: xr.Dataset, settings: Settings) -> Analysis:
         settings: the section ``analysis`` of a case or an experiment.
 
     Raises:
-        InputError: if times or positions are too few or unevenly spaced, or a setting does not suit the grid.
+        InputError: if there are too few times or positions, or the grid is uneven or does not suit a setting.
     """
     subject = subject_of(surface)
     boundary = analyse_boundary(subject)

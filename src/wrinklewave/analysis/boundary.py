@@ -31,18 +31,19 @@ class Spectrum:
 
 
 def boundary_spectrum(time: ArrayLike, displacement: ArrayLike) -> Spectrum:
-    """Spectrum of the struck end's displacement about its mean, zero-padded eightfold (no taper).
+    """Spectrum of the struck end's displacement from rest over the record, zero-padded eightfold (no taper).
 
     Args:
-        time: shape [n_times], evenly spaced [s].
-        displacement: shape [n_times] [m]; gaps (NaN) are bridged linearly.
+        time: shape [n_times] [s].
+        displacement: shape [n_times] [m]; gaps (NaN) and uneven times are bridged linearly.
     """
     time, displacement = np.asarray(time, dtype=float), np.asarray(displacement, dtype=float)
     known = np.isfinite(displacement)
-    motion = np.interp(time, time[known], displacement[known])
+    even = np.linspace(time[0], time[-1], time.size)
+    motion = np.interp(even, time[known], displacement[known])
     n = ZERO_PADDING * time.size
-    frequency = np.fft.rfftfreq(n, float(time[1] - time[0]))
-    magnitude = np.abs(np.fft.rfft(motion - motion.mean(), n=n))
+    frequency = np.fft.rfftfreq(n, float(even[1] - even[0]))
+    magnitude = np.abs(np.fft.rfft(motion, n=n))
     magnitude = magnitude / max(magnitude.max(), np.finfo(float).tiny)
     loud = np.flatnonzero(magnitude >= NEGLIGIBLE_MAGNITUDE)
     return Spectrum(frequency, magnitude, float(frequency[loud[-1]]) if loud.size else float("nan"))

@@ -106,6 +106,24 @@ def fit_speed(
     )
 
 
+def ahead_of_front(
+    time: ArrayLike, x: ArrayLike, field: ArrayLike, front: SpeedFit, *, distance: float
+) -> Array:
+    """Values of ``field`` at ``distance`` [m] ahead of a front, when it arrives at each of its positions.
+
+    Args:
+        time: shape [n_times]. x: shape [n_x], evenly spaced [m].
+        field: shape [n_times, n_x].
+
+    Returns:
+        One value for each position of the front from which the place ahead is still on the grid.
+    """
+    time, x, field = (np.asarray(a, dtype=float) for a in (time, x, field))
+    columns = np.rint((front.positions + distance - x[0]) / (x[1] - x[0])).astype(int)
+    pairs = zip(columns, front.times, strict=True)
+    return np.array([np.interp(arrival, time, field[:, c]) for c, arrival in pairs if c < x.size])
+
+
 def rise_time(time: ArrayLike, signal: ArrayLike, *, low: float = 0.1, high: float = 0.9) -> float:
     """Time a signal takes from ``low`` to ``high`` of its maximum [s]; NaN if it does not pass both."""
     signal = np.asarray(signal, dtype=float)[:, None]

@@ -13,6 +13,7 @@ from wrinklewave.laboratory_frame import Array
 if TYPE_CHECKING:
     import xarray as xr
 
+SOURCE = "surface motion"
 OPTIONAL_VARIABLES = ("strain_xx", "strain_rate_xx", "stress_xx")
 OPTIONAL_ATTRIBUTES = ("critical_strain", "critical_wavelength", "plane_strain_modulus", "stop_distance")
 
@@ -75,12 +76,14 @@ def subject_of(surface: xr.Dataset) -> Subject:
     """Take a surface motion apart.
 
     Raises:
-        InputError: if times or positions are fewer than four or unevenly spaced.
+        InputError: if there are fewer than four times or positions, or the laboratory grid is uneven.
     """
     names = ("time", "x", "X", "x_p", "y_p", "y", "u_y", "x_boundary")
     required = {name: np.asarray(surface[name].values, dtype=float) for name in names}
     for axis in ("time", "x"):
-        _check_even(required[axis], axis)
+        if required[axis].size < 4:
+            raise InputError(f"{required[axis].size} values", file=SOURCE, key=axis, expected="at least four")
+    _check_even(required["x"])
     optional = {name: _array(surface, name) for name in OPTIONAL_VARIABLES}
     attributes = {name: _number(surface, name) for name in OPTIONAL_ATTRIBUTES}
     labels = {name: str(surface.attrs.get(name, "")) for name in ("kind", "name")}
@@ -96,15 +99,13 @@ def _number(surface: xr.Dataset, name: str) -> float | None:
     return float(surface.attrs[name]) if name in surface.attrs else None
 
 
-def _check_even(values: Array, axis: str) -> None:
-    steps = np.diff(values)
-    if steps.size < 3:
-        raise InputError(f"{values.size} values", file="surface motion", key=axis, expected="at least four")
+def _check_even(x: Array) -> None:
+    steps = np.diff(x)
     if np.ptp(steps) > 1e-3 * steps.mean():
         raise InputError(
             f"steps between {steps.min():g} and {steps.max():g}",
-            file="surface motion",
-            key=axis,
+            file=SOURCE,
+            key="x",
             expected="even spacing",
-            cure="resample the surface motion to even steps first",
+            cure="resample the surface motion to an even grid",
         )

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from wrinklewave.analysis.fronts import SpeedFit, rise_time
+from wrinklewave.analysis.fronts import SpeedFit, ahead_of_front, rise_time
 from wrinklewave.analysis.results import Boundary, Pulse, QuasiStatic, Strains, Wrinkles
 from wrinklewave.analysis.subject import Settings, Subject
 from wrinklewave.laboratory_frame import Array
@@ -15,6 +15,7 @@ from wrinklewave.laboratory_frame import Array
 Scalars = Iterator[tuple[str, float]]
 
 STRUCK_MARGIN = 2e-3
+AHEAD = 10e-3
 HIGH_RATE, MODERATE_RATE = 500.0, 300.0
 
 
@@ -34,7 +35,7 @@ def summarise(
     if strains is not None:
         scalars |= dict(_strain_scalars(subject, strains))
     if quasi_static is not None:
-        scalars |= dict(_quasi_static_scalars(settings, quasi_static, wrinkles))
+        scalars |= dict(_quasi_static_scalars(subject, settings, quasi_static, wrinkles, strains))
     return {name: float(value) if math.isfinite(value) else None for name, value in scalars.items()}
 
 
@@ -49,15 +50,17 @@ def _boundary_scalars(boundary: Boundary) -> Scalars:
     yield "contact_time_s", boundary.contact_time
     yield "stop_time_s", boundary.stop_time
     yield "separation_time_s", boundary.separation_time
-    yield "boundary_displacement_max_m", np.fmax.reduce(boundary.displacement)
+    yield "boundary_displacement_max_m", _largest(boundary.displacement)
     yield "boundary_bandwidth_hz", boundary.spectrum.bandwidth
 
 
 def _pulse_scalars(subject: Subject, settings: Settings, pulse: Pulse) -> Scalars:
     yield from _speed("wavefront", pulse.wavefront)
     yield from _speed("wavefront_local", pulse.local_wavefront)
-    yield "displacement_max_m", np.fmax.reduce(pulse.displacement, axis=None)
-    yield "arc_strain_max", np.fmax.reduce(pulse.arc_strain)
+    yield "displacement_max_m", _largest(pulse.displacement)
+    ahead = ahead_of_front(subject.time, subject.x, pulse.displacement, pulse.wavefront, distance=AHEAD)
+    yield "displacement_10_mm_ahead_of_wavefront_m", _largest(np.abs(ahead))
+    yield "arc_strain_max", _largest(pulse.arc_strain)
     for position in settings.positions:
         column = int(np.abs(subject.x - position).argmin())
         yield f"rise_time_at_{1e3 * position:g}_mm_s", rise_time(subject.time, pulse.displacement[:, column])
@@ -70,18 +73,18 @@ def _wrinkle_scalars(wrinkles: Wrinkles, pulse: Pulse) -> Scalars:
     yield "wrinkle_onset_time_s", wrinkles.onset.time
     yield "wrinkle_onset_position_m", wrinkles.onset.position
     yield "wrinkle_onset_distance_m", wrinkles.onset.distance
-    yield "wrinkle_amplitude_max_m", np.fmax.reduce(wrinkles.amplitude)
+    yield "wrinkle_amplitude_max_m", _largest(wrinkles.amplitude)
 
 
 def _strain_scalars(subject: Subject, strains: Strains) -> Scalars:
     rate = np.abs(strains.rate)
     away = subject.X > STRUCK_MARGIN
-    yield "strain_rate_max_per_s", np.fmax.reduce(rate[:, away], axis=None)
-    yield "strain_rate_max_overall_per_s", np.fmax.reduce(rate, axis=None)
+    yield "strain_rate_max_per_s", _largest(rate[:, away])
+    yield "strain_rate_max_overall_per_s", _largest(rate)
     high = (rate >= HIGH_RATE).any(axis=0)
     yield "strain_rate_above_500_per_s_reach_m", subject.X[high].max() if high.any() else 0.0
     yield "strain_rate_above_300_per_s_share", float((rate[:, away] >= MODERATE_RATE).mean())
-    yield "strain_max", np.fmax.reduce(strains.strain[:, away], axis=None)
+    yield "strain_max", _largest(strains.strain[:, away])
     yield "fast_front_speed_m_per_s", strains.fast_front.speed
     yield "fast_front_speed_sigma_m_per_s", strains.fast_front.speed_sigma
     if strains.critical_front is not None:
@@ -89,14 +92,25 @@ def _strain_scalars(subject: Subject, strains: Strains) -> Scalars:
         yield "critical_strain_front_speed_sigma_m_per_s", strains.critical_front.speed_sigma
 
 
-def _quasi_static_scalars(settings: Settings, expected: QuasiStatic, wrinkles: Wrinkles) -> Scalars:
+def _quasi_static_scalars(
+    subject: Subject, settings: Settings, expected: QuasiStatic, wrinkles: Wrinkles, strains: Strains | None
+) -> Scalars:
     yield "strain_at_rest", expected.strain_at_rest
     yield "amplitude_at_rest_m", expected.amplitude_at_rest
     yield "wavelength_at_rest_m", expected.wavelength_at_rest
+    if strains is not None:
+        wrinkled = strains.strain[-1] >= expected.critical_strain
+        yield "wrinkle_free_margin_at_end_m", subject.X[wrinkled].min() if wrinkled.any() else subject.length
+        yield "strain_max_over_critical_strain", _largest(strains.strain) / expected.critical_strain
     formed = (wrinkles.amplitude >= settings.wrinkle_threshold) & (expected.amplitude > 0.0)
     yield "wrinkle_amplitude_over_expected", _median(wrinkles.amplitude[formed] / expected.amplitude[formed])
     yield "wavelength_m", _median(wrinkles.spectra.peak[formed])
     yield "wavelength_over_expected", _median(wrinkles.spectra.peak[formed] / expected.wavelength[formed])
+
+
+def _largest(values: Array) -> float:
+    values = values[np.isfinite(values)]
+    return float(values.max()) if values.size else float("nan")
 
 
 def _median(values: Array) -> float:

@@ -13,13 +13,14 @@ from wrinklewave.figures.style import BOUNDARY_COLOUR, MILLI, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HIGHEST_FREQUENCY = 2000.0
+HIGHEST_FREQUENCY = 1500.0
 
 
 @figure(
     "fig_2d_boundary_spectrum",
     number="2D",
-    caption="Motion of the struck end, and the magnitude of its Fourier transform over its maximum.",
+    caption="Motion of the struck end, and the magnitude of its Fourier transform over its maximum; dashed: "
+    "the frequency beyond which it stays below a tenth.",
 )
 def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
     """Displacement against time, and its spectrum up to 2 kHz."""
@@ -38,7 +39,8 @@ def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
     spectrum.plot(
         boundary.spectrum.frequency[shown], boundary.spectrum.magnitude[shown], color=BOUNDARY_COLOUR
     )
-    spectrum.axvline(400.0, color="0.5", lw=0.8, ls="--", label="400 Hz (paper)")
+    bandwidth = boundary.spectrum.bandwidth
+    spectrum.axvline(bandwidth, color="0.5", lw=0.8, ls="--", label=f"{bandwidth:.0f} Hz")
     spectrum.set(
         xlabel="frequency (Hz)", ylabel="magnitude / maximum", ylim=(0.0, 1.05), xlim=(0.0, HIGHEST_FREQUENCY)
     )

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SHARES = {
-    "internal_elastic": ("stored", "#0000a7"),
-    "kinetic": ("kinetic", "#c1272d"),
-    "viscous": ("viscous dissipation", "#008176"),
-    "bulk_viscosity": ("bulk viscosity", "#eecc16"),
-    "hourglass": ("hourglass", "#b34fc4"),
-    "contact": ("contact", "#7f7f7f"),
-    "friction": ("friction", "#8c564b"),
+    "elastic_J_per_m": ("elastic, stored", "#0000a7"),
+    "kinetic_J_per_m": ("kinetic", "#c1272d"),
+    "viscous_work_J_per_m": ("viscous work", "#008176"),
+    "bulk_viscosity_J_per_m": ("bulk viscosity", "#eecc16"),
+    "hourglass_J_per_m": ("hourglass", "#b34fc4"),
+    "contact_loss_J_per_m": ("contact loss", "#7f7f7f"),
+    "friction_J_per_m": ("friction", "#8c564b"),
 }
 
 
@@ -51,11 +51,11 @@ def energy_balance(inputs: FigureInputs) -> Figure:
         alpha=0.75,
         lw=0,
     )
-    energies.plot(time, history["external_work"], color="black", lw=1.2, label="external work")
+    energies.plot(time, history["external_work_J_per_m"], color="black", lw=1.2, label="external work")
     energies.set(ylabel="energy (J/m)", xlim=(time[0], time[-1]))
     energies.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-    largest = max(abs(history["external_work"]).max(), 1e-300)
-    imbalance.plot(time, 100.0 * history["imbalance"] / largest, color="black", lw=1.0)
+    largest = max(abs(history["external_work_J_per_m"]).max(), 1e-300)
+    imbalance.plot(time, 100.0 * history["imbalance_J_per_m"] / largest, color="black", lw=1.0)
     imbalance.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
     imbalance.set(xlabel="time (ms)", ylabel="imbalance (%)")
     return drawing

@@ -26,7 +26,8 @@ def _possible(inputs: FigureInputs) -> bool:
     caption="(A) Depth-averaged nominal stress. (B) Critical strain of the film on a substrate whose "
     "modulus is the ratio of depth-averaged stress and strain, over its quasi-static value "
     "(logarithmic). (C) Strain over that critical strain; wrinkles are expected beyond the white "
-    "line, where it passes 1. Dashed: wavefront.",
+    "line, where it passes 1. Grey: hardly any strain, or stress and strain of opposite sign. "
+    "Dashed: wavefront.",
     possible=_possible,
 )
 def momentary_critical_strain(inputs: FigureInputs) -> Figure:

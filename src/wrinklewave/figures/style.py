@@ -116,10 +116,12 @@ def space_time_map(
     extend: str,
 ) -> AxesImage:
     """Map over laboratory position (mm, to the right) and time (ms, upwards), with its colour bar."""
-    half_x, half_t = 0.5 * (x[1] - x[0]), 0.5 * (time[1] - time[0])
+    half_x, half_t = 0.5 * (x[1] - x[0]), 0.5 * (time[-1] - time[0]) / (time.size - 1)
     extent = (x[0] - half_x, x[-1] + half_x, time[0] - half_t, time[-1] + half_t)
+    even = np.linspace(time[0], time[-1], time.size)
+    rows = np.searchsorted(0.5 * (time[1:] + time[:-1]), even)  # nearest, where times are uneven
     image = axes.imshow(
-        np.ma.masked_invalid(values),
+        np.ma.masked_invalid(values[rows]),
         origin="lower",
         aspect="auto",
         extent=tuple(MILLI * e for e in extent),  # type: ignore[arg-type]

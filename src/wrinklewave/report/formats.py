@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 UNITS = (  # ending of a name, unit to show, factor from SI
     ("_updates_per_s", "million/s", 1e-6),
+    ("_J_per_m", "J/m", 1.0),
+    ("_N_per_m", "N/m", 1.0),
     ("_m_per_s", "m/s", 1.0),
     ("_per_s", "1/s", 1.0),
     ("_hz", "Hz", 1.0),

@@ -131,5 +131,6 @@ def _balance(history: Mapping[str, Array] | None) -> dict[str, Any] | None:
     rows = np.unique(np.linspace(0, len(history["time_s"]) - 1, BALANCE_LINES).astype(int))
     columns = {name: np.asarray(values) for name, values in history.items()}
     kept = {name: values for name, values in columns.items() if name == "time_s" or np.any(values[rows] != 0)}
-    lines = [[float(values[row]) for values in kept.values()] for row in rows]
-    return {"names": [name.replace("_", " ") for name in kept], "lines": lines}
+    headings = [shown(name, None) for name in kept]
+    lines = [[shown(name, float(values[row])).value for name, values in kept.items()] for row in rows]
+    return {"names": [f"{heading.label} {heading.unit}".strip() for heading in headings], "lines": lines}
