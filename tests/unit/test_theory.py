@@ -89,6 +89,12 @@ def test_viscoelastic_wave_has_the_wavenumber_of_the_complex_modulus(
         assert waves.attenuation_length(E, rho, omega) == pytest.approx(-1 / k.imag, rel=1e-6)
 
 
+def test_report_without_lateral_motion() -> None:
+    names = {number.name for number in report(case_from_text(FILM.format(film="").replace("0.45", "0.0")))}
+    assert "Love's limit, long-term" not in names
+    assert "bar speed, long-term" in names
+
+
 def test_elastic_wave_does_not_decay() -> None:
     assert waves.attenuation_length(1 + 0j, 1.0, 1.0) == math.inf
     assert waves.viscoelastic_bar_speed(4 + 0j, 1.0) == waves.bar_speed(4.0, 1.0) == 2.0

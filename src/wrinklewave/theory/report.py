@@ -59,17 +59,19 @@ class Row:
 
 
 def report(case: Case) -> list[Quantity]:
-    """Return every closed-form number for a case; those that it lacks inputs for are left out."""
+    """Return every closed-form number of a case; those without inputs or a finite value are left out."""
     constants, papers = Constants(case), is_papers(case)
     numbers = (_quantity(group, row, constants, papers) for group, rows in ROWS.items() for row in rows)
     return [number for number in numbers if number is not None]
 
 
 def _quantity(group: str, row: Row, constants: Constants, papers: bool) -> Quantity | None:
-    """The number of a row; None where the case lacks an input for it."""
+    """The number of a row; None where the case lacks an input for it, or where there is no finite answer."""
     try:
         value = float(row.compute(constants))
-    except NotGivenError:
+    except (NotGivenError, ArithmeticError):  # no Love limit for nu = 0, no amplitude beyond self-contact
+        return None
+    if not math.isfinite(value):
         return None
     remark = "; ".join(text for text in (row.remark, row.paper_remark if papers else "") if text)
     printed = row.paper if papers else None

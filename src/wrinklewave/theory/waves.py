@@ -78,10 +78,10 @@ def love_frequency(c: float, nu: float, height: float) -> float:
 
     Args:
         c: bar speed [m/s].
-        nu: Poisson's ratio.
+        nu: Poisson's ratio; 0 raises ``ZeroDivisionError``, there is no limit then.
         height: side H of the square section [m].
     """
-    return c * math.sqrt(6) / (2 * math.pi * nu * height)
+    return c * math.sqrt(6) / (2 * math.pi * abs(nu) * height)
 
 
 def love_frequency_plane_strain(c: float, nu: float, height: float) -> float:
@@ -91,7 +91,7 @@ def love_frequency_plane_strain(c: float, nu: float, height: float) -> float:
 
     Args:
         c: speed of long waves in plane strain, :func:`plate_speed` [m/s].
-        nu: Poisson's ratio.
+        nu: Poisson's ratio, not 0.
         height: H [m].
     """
-    return c * math.sqrt(12) * (1 - nu) / (2 * math.pi * nu * height)
+    return c * math.sqrt(12) * (1 - nu) / (2 * math.pi * abs(nu) * height)
