@@ -24,7 +24,8 @@ class Striker:
     Attributes:
         velocity: in flight [m/s].
         stop_distance: travel after contact at which the stoppers halt it [m].
-        rise_time: time after contact in which it reaches ``velocity`` again, as in the striker drive [s].
+        rise_time: time after contact in which its speed rises again from nothing to ``velocity``, along
+            half a cosine as in the striker drive [s].
         height: how far it reaches above the undeformed surface [m].
     """
 
@@ -38,9 +39,11 @@ class Striker:
         if time <= 0:
             return self.velocity * time
         rising = min(time, self.rise_time)
-        travel = self.velocity * (time - rising)
-        if self.rise_time > 0:
-            travel += 0.5 * self.velocity * rising**2 / self.rise_time
+        travel = self.velocity * (time - 0.5 * rising)
+        if time < self.rise_time:
+            travel -= (
+                self.velocity * self.rise_time / (2 * math.pi) * math.sin(math.pi * time / self.rise_time)
+            )
         return min(travel, self.stop_distance)
 
 

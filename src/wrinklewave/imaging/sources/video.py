@@ -24,6 +24,10 @@ if TYPE_CHECKING:
     import av
 
 UNDECODABLE = "it cannot be decoded"
+CONTAINERS = ("avi", "mov,mp4,m4a,3gp,3g2,mj2", "matroska,webm", "mpeg", "mpegts", "asf", "mxf", "nut")
+"""Formats that FFmpeg may take a file for; left to itself it makes moving pictures even of letters."""
+DAMAGE = ("crc mismatch", "error", "concealing", "damage", "overread", "bad vlc")
+"""Words in which FFmpeg's decoders complain about the data of a frame."""
 MPEG_RANGE = 1
 """FFmpeg's ``AVCOL_RANGE_MPEG``: grey runs from 16 to 235 (of 8 bits)."""
 
@@ -78,8 +82,6 @@ class VideoSource(FrameSource):
 
     def _decode_from(self, index: int) -> Iterator[tuple[int, Image]]:
         """Pairs (index, frame) from the key frame at or before ``index`` on, without the damaged ones."""
-        import av
-
         self._container.seek(
             self._stamps[self._keys[self._keys <= index][-1]], stream=self._stream, backward=True
         )
@@ -90,16 +92,14 @@ class VideoSource(FrameSource):
                 damaged = False
             if damaged:
                 continue
-            try:
-                frames = packet.decode()
-            except av.FFmpegError:
+            frames = _decoded(packet)
+            if frames is None:
                 damaged = True
                 self._stream.codec_context.flush_buffers()
                 continue
             for frame in frames:
-                damaged = damaged or frame.is_corrupt
                 stamp = frame.pts if frame.pts is not None else frame.dts
-                if not damaged and stamp in self._index:
+                if stamp in self._index:
                     yield self._index[stamp], _grey(frame)
 
     def _set_format(self) -> None:
@@ -142,17 +142,24 @@ def _open(path: Path) -> tuple[av.container.InputContainer, Any]:
     try:
         container = av.open(str(path), mode="r")
     except av.FFmpegError as error:
-        raise InputError(
-            f"cannot be read as a recording ({error.strerror})",
-            file=path,
-            expected="a TIFF stack, a folder of images, a .cine file or a video (AVI, MP4, MOV)",
-            cure=_cure(path),
-        ) from error
+        raise _no_recording(path, error.strerror or str(error)) from error
+    if container.format.name not in CONTAINERS:
+        container.close()
+        raise _no_recording(path, f"it looks like {container.format.long_name}")
     streams = container.streams.video
     if not streams or not streams[0].codec_context or streams[0].codec_context.format is None:
         container.close()
         raise InputError("holds no pictures that can be decoded", file=path, expected="a video stream")
     return container, streams[0]
+
+
+def _no_recording(path: Path, reason: str) -> InputError:
+    return InputError(
+        f"cannot be read as a recording ({reason})",
+        file=path,
+        expected="a TIFF stack, a folder of images, a .cine file or a video (AVI, MP4, MOV)",
+        cure=_cure(path),
+    )
 
 
 def _cure(path: Path) -> str | None:
@@ -162,6 +169,28 @@ def _cure(path: Path) -> str | None:
     if not is_quicktime:
         return None
     return "the index of an MP4 or MOV file stands at its end: if the file was cut short, copy it anew"
+
+
+def _decoded(packet: av.Packet) -> list[av.VideoFrame] | None:
+    """Frames that a packet completes, or None if it is damaged.
+
+    Decoders repair what they can and tell of it in their log only, so that has to be read.
+    """
+    import av
+
+    before = av.logging.get_level()
+    av.logging.set_level(av.logging.ERROR)
+    try:
+        with av.logging.Capture(local=False) as log:
+            frames = packet.decode()
+    except av.FFmpegError:
+        return None
+    finally:
+        av.logging.set_level(before)
+    complaints = " ".join(message.lower() for _, _, message in log)
+    if any(word in complaints for word in DAMAGE) or any(frame.is_corrupt for frame in frames):
+        return None
+    return frames
 
 
 def _scan(path: Path) -> tuple[int, list[int], np.ndarray]:
