@@ -14,7 +14,12 @@ from wrinklewave.analysis.boundary import boundary_spectrum, contact_time, separ
 from wrinklewave.analysis.filters import low_pass
 from wrinklewave.analysis.fronts import arrival_times, fit_speed, rise_time
 from wrinklewave.analysis.strain import arc_length_strain, strain_rate
-from wrinklewave.analysis.wrinkles import amplitude_envelope, mean_amplitude, wavelength_spectra
+from wrinklewave.analysis.wrinkles import (
+    amplitude_envelope,
+    analytic_signal,
+    mean_amplitude,
+    wavelength_spectra,
+)
 from wrinklewave.errors import InputError
 from wrinklewave.wrinkling.travelling_pulse import TravellingPulse
 
@@ -213,6 +218,16 @@ def test_a_sinusoid_has_its_amplitude_and_wavelength(wavelength: float, phase: f
     spectra = wavelength_spectra(wrinkles, X_GRID, window=(16e-3, 49e-3), longest=5e-3)
     assert spectra.peak[0] == pytest.approx(wavelength, rel=1e-3)
     assert spectra.magnitude.max() == pytest.approx(1.5e-4, rel=1e-2)
+
+
+@pytest.mark.parametrize("n", [60, 75])
+def test_analytic_signal_is_scipys(n: int) -> None:
+    from scipy.fft import next_fast_len
+    from scipy.signal import hilbert
+
+    signal = np.random.default_rng(1).normal(size=(3, n))
+    expected = hilbert(signal, N=next_fast_len(2 * n), axis=-1)[:, :n]
+    np.testing.assert_allclose(analytic_signal(signal), expected, atol=1e-12)
 
 
 def test_amplitude_leaves_out_what_is_unknown() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -40,14 +41,24 @@ def amplitude_envelope(wrinkles: ArrayLike) -> Array:
     Returns:
         Amplitude [m], same shape.
     """
-    from scipy.fft import next_fast_len
-    from scipy.signal import hilbert
-
     wrinkles = np.asarray(wrinkles, dtype=float)
     known = np.isfinite(wrinkles)
-    n = wrinkles.shape[-1]
-    analytic = hilbert(np.where(known, wrinkles, 0.0), N=next_fast_len(2 * n), axis=-1)[..., :n]
-    return np.where(known, np.abs(analytic), np.nan)
+    return np.where(known, np.abs(analytic_signal(np.where(known, wrinkles, 0.0))), np.nan)
+
+
+def analytic_signal(signal: Array) -> NDArray[np.complexfloating[Any]]:
+    """Signal with its Hilbert transform as imaginary part, along the last axis, padded with zeros to twice
+    the length so that its ends do not meet. (``scipy.signal`` has it too, but takes longer to import than
+    this to run.)
+    """
+    from scipy.fft import fft, ifft, next_fast_len
+
+    length = signal.shape[-1]
+    n = next_fast_len(2 * length)
+    spectrum = fft(signal, n, axis=-1)
+    spectrum[..., 1 : (n + 1) // 2] *= 2.0
+    spectrum[..., n // 2 + 1 :] = 0.0
+    return ifft(spectrum, axis=-1)[..., :length]
 
 
 def mean_amplitude(envelope: ArrayLike, x: ArrayLike, *, window: tuple[float, float]) -> Array:
@@ -77,13 +88,15 @@ def wavelength_spectra(
         Spectra between ``longest`` and four samples of the grid. The peak is NaN where the spectrum stays
         below a hundredth of the strongest one of all times.
     """
+    from scipy.fft import next_fast_len, rfft, rfftfreq
+
     x = np.asarray(x, dtype=float)
     signal = np.nan_to_num(np.asarray(wrinkles, dtype=float)[:, _window(x, window)])
     n, spacing = signal.shape[1], float(x[1] - x[0])
     taper = np.hanning(n)
-    padded = ZERO_PADDING * n
-    magnitude = np.abs(np.fft.rfft(signal * taper, n=padded, axis=1)) * 2.0 / taper.sum()
-    wavenumber = np.fft.rfftfreq(padded, spacing)
+    padded = next_fast_len(ZERO_PADDING * n, real=True)
+    magnitude = np.abs(rfft(signal * taper, n=padded, axis=1)) * 2.0 / taper.sum()
+    wavenumber = rfftfreq(padded, spacing)
     kept = (wavenumber >= 1.0 / longest) & (wavenumber <= 1.0 / (4.0 * spacing))
     wavenumber, magnitude = wavenumber[kept][::-1], magnitude[:, kept][:, ::-1]
     return WavelengthSpectra(1.0 / wavenumber, magnitude, _peak_wavelength(wavenumber, magnitude))
