@@ -81,8 +81,8 @@ def _strain_scalars(subject: Subject, strains: Strains) -> Scalars:
     away = subject.X > STRUCK_MARGIN
     yield "strain_rate_max_per_s", _largest(rate[:, away])
     yield "strain_rate_max_overall_per_s", _largest(rate)
-    high = (rate >= HIGH_RATE).any(axis=0)
-    yield "strain_rate_above_500_per_s_reach_m", subject.X[high].max() if high.any() else 0.0
+    moderate = ~(rate >= HIGH_RATE).any(axis=0)
+    yield "strain_rate_above_500_per_s_reach_m", subject.X[moderate][0] if moderate.any() else subject.length
     yield "strain_rate_above_300_per_s_share", float((rate[:, away] >= MODERATE_RATE).mean())
     yield "strain_max", _largest(strains.strain[:, away])
     yield "fast_front_speed_m_per_s", strains.fast_front.speed

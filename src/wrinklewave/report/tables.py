@@ -39,10 +39,13 @@ def bulk_choices(rows: Sequence[Row]) -> list[str]:
 
 def remarks(row: Row) -> str:
     """Reasons of all choices that do not reproduce the row; each is named if they differ."""
-    reasons = {bulk: found.remark for bulk, found in row.results.items() if found.remark}
-    if len(set(reasons.values())) <= 1:
-        return next(iter(reasons.values()), "")
-    return "; ".join(f"{bulk}: {reason}" for bulk, reason in reasons.items())
+    choices: dict[str, list[str]] = {}
+    for bulk, found in row.results.items():
+        if found.remark:
+            choices.setdefault(found.remark, []).append(bulk)
+    if len(choices) == 1:
+        return next(iter(choices))
+    return "; ".join(f"{', '.join(bulks)}: {reason}" for reason, bulks in choices.items())
 
 
 def summary_table(summary: Mapping[str, float | None], names: Sequence[str]) -> Table:
