@@ -1,0 +1,185 @@
+"""The sample's free surface in one frame, at two resolutions, each with its standard uncertainty."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from wrinklewave.imaging.arrays import Flags, Floats, Pixels
+from wrinklewave.imaging.edges.coarse import coarse_edge
+from wrinklewave.imaging.edges.columns import Columns, find_columns
+from wrinklewave.imaging.edges.lateral import lateral_kernels, local_kernels, seen_exactly, seen_linearly
+from wrinklewave.imaging.edges.levels import Levels, find_levels
+from wrinklewave.imaging.edges.regularised import ORDER, band_limited_surface, penalty, uncertainty
+
+RESOLUTION = 10.0  # px
+_FINEST = 5.5  # lateral blurs to a wavelength: finer ones would be little but amplified noise
+_COARSE_SPAN = 4  # columns on either side for the slope of the coarse edge
+_FEWEST = 4 * ORDER  # columns with an edge
+_ROUGHLY, _FINELY = 0.05, 1e-3  # px: where the columns' iterations stop, first and last time
+_ASTRAY = 6.0  # standard uncertainties between a column and the surface through its neighbours ...
+_ASTRAY_ROWS = 0.3  # ... and pixels beyond
+_BRIDGE = 2.0  # a surface point is valid while its uncertainty is below so many of a single column's
+
+
+@dataclass(frozen=True)
+class Optics:
+    """What a recording's images of an edge have in common.
+
+    Attributes:
+        blur: standard deviation of the optical blur [px], the pixel's own size not included.
+        sample_brighter: whether the sample is brighter than the background.
+    """
+
+    blur: float
+    sample_brighter: bool
+
+
+@dataclass(frozen=True)
+class Edge:
+    """The free surface in one frame; arrays of shape [n_columns], rows and uncertainties in pixels.
+
+    A row r is the centre of the frame's row r of pixels; NaN where nothing is known.
+
+    Attributes:
+        rows: the surface regularised along the sample, at the stated resolution.
+        sigma: standard uncertainty of ``rows``.
+        valid: whether ``rows`` is an observation (gaps much shorter than the resolution are bridged).
+        column_rows: the surface column by column: each one's own estimate, freed of the lateral blur's bias.
+        column_sigma: standard uncertainty of ``column_rows``.
+        column_valid: whether a well-shaped edge was found in the column.
+        contrast: median difference of grey values across the edge.
+        noise: standard deviation of a pixel's grey value (root mean square of both sides).
+    """
+
+    rows: Floats
+    sigma: Floats
+    valid: Flags
+    column_rows: Floats
+    column_sigma: Floats
+    column_valid: Flags
+    contrast: float
+    noise: float
+
+
+class EdgeFinder:
+    """Finds the free surface of a sample that fills the frame below it, each frame on its own.
+
+    Args:
+        optics: blur and polarity of the recording.
+        resolution: shortest wavelength to keep along the surface [px].
+
+    Attributes:
+        resolution: the one used: not finer than 5.5 standard deviations of the lateral blur.
+    """
+
+    def __init__(self, optics: Optics, *, resolution: float = RESOLUTION) -> None:
+        self.optics = optics
+        self.resolution = max(resolution, _FINEST * float(np.hypot(optics.blur, 12**-0.5)))
+        self._kernels = lateral_kernels(optics.blur)
+        self._reach = self._kernels.shape[1] // 2
+        self._stiffness = penalty(self.resolution, optics.blur)
+
+    def find(self, image: Pixels, *, first: int = 0, stop: int | None = None) -> Edge:
+        """The surface in the columns from ``first`` up to ``stop`` of an image [n_rows, n_columns]."""
+        n_columns = image.shape[1]
+        stop = n_columns if stop is None else min(stop, n_columns)
+        start = coarse_edge(image, 1.0 if self.optics.sample_brighter else -1.0)
+        slope, beyond = _slope(start, _COARSE_SPAN), np.zeros(n_columns)
+        levels = find_levels(image, start, self._seen_blur(slope), max(first, 0), stop)
+        columns = find_columns(image, start, self._seen_blur(slope), levels, levels.usable, _ROUGHLY)
+        if columns.found.sum() < _FEWEST:
+            return _nothing(levels)
+        rough = self._fit(columns, slope, beyond)
+        part = rough.part
+        slope[part] = _slope(rough.surface, 1)[self._reach : -self._reach]
+        linear = seen_linearly(rough.surface, local_kernels(slope[part], self._kernels))
+        start = start.copy()
+        start[part] = seen_exactly(rough.surface, linear, slope[part], self.optics.blur)
+        beyond[part] = start[part] - linear
+        usable = levels.usable & _within(part, n_columns)
+        columns = find_columns(image, start, self._seen_blur(slope), levels, usable, _FINELY)
+        columns = columns.only(np.abs(columns.rows - start) <= _ASTRAY * columns.sigma + _ASTRAY_ROWS)
+        if columns.found.sum() < _FEWEST:
+            return _nothing(levels)
+        return self._edge(columns, beyond, self._fit(columns, slope, beyond), levels)
+
+    def _seen_blur(self, slope: Floats) -> Floats:
+        """Standard deviation of the blur that a column sees at the slope m, without the pixel's height.
+
+        Its square is s^2 (1 + m^2) + m^2/12, where the last term is the pixel's width.
+        """
+        return np.sqrt(self.optics.blur**2 * (1 + slope**2) + slope**2 / 12)
+
+    def _fit(self, columns: Columns, slope: Floats, beyond: Floats) -> _Fit:
+        """The surface through ``columns`` of a surface of about this ``slope``.
+
+        ``beyond`` is where columns see the surface, less what the linear lateral blur says.
+        """
+        found = np.flatnonzero(columns.found)
+        part = slice(int(found[0]), int(found[-1]) + 1)
+        levelled = columns.sigma[found] * np.sqrt(self.optics.blur / self._seen_blur(slope[found]))
+        level_sigma = float(np.median(levelled))
+        local = local_kernels(slope[part], self._kernels)
+        surface, factor = band_limited_surface(
+            (columns.rows - beyond)[part],
+            columns.sigma[part],
+            level_sigma,
+            slope[part],
+            local,
+            self._stiffness,
+        )
+        return _Fit(part, surface, factor, level_sigma, seen_linearly(surface, local))
+
+    def _edge(self, columns: Columns, beyond: Floats, fit: _Fit, levels: Levels) -> Edge:
+        rows, sigma, shift = (np.full(columns.rows.size, value) for value in (np.nan, np.inf, np.nan))
+        inner = slice(self._reach, -self._reach)
+        rows[fit.part] = fit.surface[inner]
+        sigma[fit.part] = uncertainty(fit.factor, fit.level_sigma)[inner]
+        shift[fit.part] = fit.surface[inner] - fit.linear
+        known = np.where(columns.found, columns.sigma, 0.0)
+        return Edge(
+            rows=rows,
+            sigma=sigma,
+            valid=sigma < _BRIDGE * np.maximum(known, fit.level_sigma),
+            column_rows=columns.rows - beyond + shift,
+            column_sigma=columns.sigma,
+            column_valid=columns.found,
+            contrast=levels.contrast,
+            noise=levels.mean_noise,
+        )
+
+
+class _Fit(NamedTuple):
+    """A band-limited surface in the columns ``part``: with its margins, its factor, and as columns see it."""
+
+    part: slice
+    surface: Floats
+    factor: Floats
+    level_sigma: float
+    linear: Floats
+
+
+def _nothing(levels: Levels) -> Edge:
+    n_columns = levels.usable.size
+    nowhere, unknown, never = (
+        np.full(n_columns, np.nan),
+        np.full(n_columns, np.inf),
+        np.zeros(n_columns, bool),
+    )
+    return Edge(nowhere, unknown, never, nowhere, unknown, never, levels.contrast, levels.mean_noise)
+
+
+def _within(part: slice, n_columns: int) -> Flags:
+    inside = np.zeros(n_columns, bool)
+    inside[part] = True
+    return inside
+
+
+def _slope(rows: Floats, span: int) -> Floats:
+    """Central differences over ``span`` columns on either side, shorter at the ends."""
+    c = np.arange(rows.size)
+    left, right = np.maximum(c - span, 0), np.minimum(c + span, rows.size - 1)
+    return (rows[right] - rows[left]) / (right - left)

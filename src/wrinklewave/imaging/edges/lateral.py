@@ -1,0 +1,81 @@
+"""What blur along the row does to the edge: columns see their neighbours.
+
+The column at x sees the mixture of the profiles of its neighbours, weighted by the lateral blur g (the
+optics', of standard deviation s, and the pixel's width). The least-squares fit of a single profile of blur
+sigma to the mixture lies where sum_n g_n Phi((delta - d_n)/T) = 1/2, with d_n = y(x + n) - y(x) and T^2 =
+s^2 + sigma^2 + 1/6. For small curvature y'' this is delta = y'' v/2, v = (s^2 + 1/12) (1 + m^2/2)/(1 + m^2)
+at the slope m: a linear operator B of local blurs v. See docs/measurement_theory.md.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from wrinklewave.imaging.arrays import Floats
+from wrinklewave.imaging.edges.profile import normal_distribution
+
+_SHARES = 17  # table of blurs between v/2 (steep) and v (level)
+_STEPS = 2
+
+
+def lateral_kernels(blur: float) -> NDArray[np.float64]:
+    """Kernels of the lateral blur for ``_SHARES`` variances from v/2 to v = blur^2 + 1/12, shape [_SHARES, 2
+    n + 1].
+
+    The kernel of variance v is exp(-v) I_n(v), the diffusion kernel of a row of pixels.
+    """
+    from scipy.special import ive
+
+    v = blur**2 + 1 / 12
+    reach = max(2, int(np.ceil(3.2 * np.sqrt(v))))
+    shares = v * np.linspace(0.5, 1.0, _SHARES)
+    kernels = ive(np.arange(-reach, reach + 1)[None, :], shares[:, None])
+    return kernels / kernels.sum(axis=1, keepdims=True)
+
+
+@njit(cache=True, nogil=True)
+def local_kernels(slope: Floats, kernels: Floats) -> Floats:
+    """Rows of B, shape [n, 2 reach + 1], for the slopes at n columns."""
+    n, width = slope.size, kernels.shape[1]
+    rows = np.empty((n, width))
+    for i in range(n):
+        position = (_SHARES - 1) / (1.0 + slope[i] * slope[i])  # (1 + m2/2)/(1 + m2) = 1/2 + 1/2 1/(1 + m2)
+        k = min(int(position), _SHARES - 2)
+        f = position - k
+        for j in range(width):
+            rows[i, j] = (1.0 - f) * kernels[k, j] + f * kernels[k + 1, j]
+    return rows
+
+
+@njit(cache=True, nogil=True)
+def seen_linearly(surface: Floats, local: Floats) -> Floats:
+    """B y at the n columns of ``local``; the surface goes on ``reach`` columns further on both sides."""
+    n, width = local.shape
+    seen = np.zeros(n)
+    for i in range(n):
+        for j in range(width):
+            seen[i] += local[i, j] * surface[i + j]
+    return seen
+
+
+@njit(cache=True, nogil=True)
+def seen_exactly(surface: Floats, linear: Floats, slope: Floats, blur: float) -> Floats:
+    """Where columns see the surface: Newton's steps from the linear answer, steep as a normal mixture."""
+    n = linear.size
+    width = surface.size - n + 1
+    v = blur * blur + 1.0 / 12.0
+    share = np.exp(-0.5 * (np.arange(width) - width // 2) ** 2 / v)
+    share /= share.sum()
+    seen = linear.copy()
+    for i in range(n):
+        across = v * slope[i] * slope[i]
+        T = np.sqrt(2.0 * v + across)
+        steepness = np.sqrt(2.0 * np.pi * (T * T + across))
+        for _ in range(_STEPS):
+            below = 0.0
+            for j in range(width):
+                below += share[j] * normal_distribution((seen[i] - surface[i + j]) / T)[0]
+            seen[i] += (0.5 - below) * steepness
+    return seen

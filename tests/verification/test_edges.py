@@ -1,0 +1,201 @@
+"""The edge detector against exact images, and its errors against the Cramér-Rao bound."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.special import ndtr
+
+from wrinklewave.imaging.edges import EdgeFinder, Optics
+from wrinklewave.imaging.edges.bounds import band_limited_bound, column_bound, mean_column_bound
+from wrinklewave.imaging.edges.locking import PixelLocking
+
+Surface = Callable[[NDArray[np.float64]], NDArray[np.float64]]
+
+LOW, HIGH = 400.0, 1600.0
+_SUB = 8  # sub-columns per pixel for the lateral convolution
+
+
+def edge_image(
+    surface: Callable[[NDArray[np.float64]], NDArray[np.float64]], shape: tuple[int, int], blur: float
+) -> NDArray[np.float64]:
+    """Grey values of a step at the row ``surface(column)``, HIGH below it; blur is a standard deviation [px].
+
+    Down a column the convolution and the pixel's integral are exact: s [G((u + 1/2)/s) - G((u - 1/2)/s)] with
+    G(t) = t Phi(t) + phi(t). Along the row both are one kernel, Phi((x + 1/2)/s) - Phi((x - 1/2)/s), summed
+    over sub-columns at the midpoint rule.
+    """
+    n_rows, n_columns = shape
+    pad = int(np.ceil(6 * blur)) + 2
+    x = (np.arange((n_columns + 2 * pad) * _SUB) + 0.5) / _SUB - 0.5 - pad
+    u = np.arange(n_rows)[:, None] - surface(x)[None, :]
+    profile = blur * (_G((u + 0.5) / blur) - _G((u - 0.5) / blur))
+    offset = (np.arange(-pad * _SUB, pad * _SUB) + 0.5) / _SUB
+    kernel = ndtr((offset + 0.5) / blur) - ndtr((offset - 0.5) / blur)
+    kernel /= kernel.sum()
+    windows = np.lib.stride_tricks.sliding_window_view(profile, 2 * pad * _SUB, axis=1)
+    return LOW + (HIGH - LOW) * (windows[:, _SUB // 2 :: _SUB][:, :n_columns] @ kernel)
+
+
+def with_noise(image: NDArray[np.float64], contrast_to_noise: float, seed: int) -> NDArray[np.float32]:
+    """The image with white Gaussian noise, rounded to whole grey values."""
+    noise = np.random.default_rng(seed).normal(0, (HIGH - LOW) / contrast_to_noise, image.shape)
+    return np.round(image + noise).astype(np.float32)
+
+
+def _G(t: NDArray[np.float64]) -> NDArray[np.float64]:
+    return t * ndtr(t) + np.exp(-0.5 * t**2) / np.sqrt(2 * np.pi)
+
+
+def _errors(
+    surface: Surface,
+    blur: float,
+    contrast_to_noise: float,
+    *,
+    n_images: int,
+    n_columns: int = 512,
+    trim: int = 12,
+    seed: int = 0,
+) -> dict[str, NDArray[np.float64]]:
+    """Errors, as they are and over their uncertainties, of images that differ in their noise; no ends."""
+    clean = edge_image(surface, (96, n_columns), blur)
+    finder = EdgeFinder(Optics(blur=blur, sample_brighter=True))
+    truth = surface(np.arange(float(n_columns)))
+    found = [finder.find(with_noise(clean, contrast_to_noise, seed + i)) for i in range(n_images)]
+    inner = slice(trim, n_columns - trim)
+    assert all(edge.valid[inner].all() for edge in found)
+    assert np.mean([edge.column_valid[inner] for edge in found]) > 0.995
+    errors = {
+        "surface": np.array([edge.rows - truth for edge in found]),
+        "column": np.array([edge.column_rows - truth for edge in found]),
+    }
+    reduced = {
+        "surface_reduced": errors["surface"] / np.array([edge.sigma for edge in found]),
+        "column_reduced": errors["column"] / np.array([edge.column_sigma for edge in found]),
+    }
+    return {name: values[:, inner] for name, values in (errors | reduced).items()}
+
+
+def _rms(values: NDArray[np.float64]) -> float:
+    return float(np.sqrt(np.nanmean(np.square(values))))
+
+
+def _tilted(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A slow tilt passes through every sub-pixel phase."""
+    return 45.2 + 0.011 * x
+
+
+def _wrinkled(amplitude: float, wavelength: float) -> Surface:
+    return lambda x: 47.8 + amplitude * np.cos(2 * np.pi * x / wavelength)
+
+
+def _turned(x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Steep (slope 1.3) at the left, as where the surface turns near the struck end."""
+    return 20 + 65 * np.exp(-x / 50) + 0.3 * np.sin(2 * np.pi * x / 33)
+
+
+def _band_limited(resolution: float, seed: int, rms: float = 0.5) -> Surface:
+    """Random waves of equal power per wave number, none shorter than ``resolution``."""
+    rng = np.random.default_rng(seed)
+    k = rng.uniform(2 * np.pi / 400, 2 * np.pi / resolution, 60)
+    phase = rng.uniform(0, 2 * np.pi, 60)
+    return lambda x: 47.5 + rms * np.sqrt(2 / 60) * np.cos(k[:, None] * x + phase[:, None]).sum(axis=0)
+
+
+def test_column_bound_in_the_limit_of_small_pixels() -> None:
+    # Integral of the squared sensitivity phi(u/s)^2/s^2 du = 1/(2 sqrt(pi) s): sigma = sqrt(2 sqrt(pi)
+    # s)/CNR;
+    # for s = 1.2 px and CNR 20 it is 0.1031 px. The pixel widens the blur: s^2 -> s^2 + 1/12, to order s^-4.
+    assert np.sqrt(2 * np.sqrt(np.pi) * 1.2) / 20 == pytest.approx(0.1031, abs=1e-4)
+    assert column_bound(20, 12.0) == pytest.approx(np.sqrt(2 * np.sqrt(np.pi) * 12.0) / 20, rel=2e-4)
+    assert column_bound(20, 1.2) == pytest.approx(
+        np.sqrt(2 * np.sqrt(np.pi) * np.hypot(1.2, 12**-0.5)) / 20, rel=2e-3
+    )
+
+
+def test_band_limited_bound_without_blur_counts_degrees_of_freedom() -> None:
+    # 2/R independent values per column: sigma = sigma_column sqrt(2/R) but for the pixel's width,
+    # exp(k^2/12).
+    expected = mean_column_bound(20, 0.3) * np.sqrt(2 / 50)
+    assert band_limited_bound(20, 0.3, 50) == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("blur", [0.5, 1.2, 2.0, 3.0])
+@pytest.mark.parametrize(
+    "surface", [_tilted, _wrinkled(2.0, 36.3), _turned], ids=["tilted", "wrinkled", "turned"]
+)
+def test_bias(surface: Surface, blur: float) -> None:
+    """Below 0.01 px root mean square along the surface; noise contributes under 0.002 px here."""
+    errors = _errors(surface, blur, 1000, n_images=1, trim=20)
+    assert _rms(errors["surface"]) < 0.01
+    assert _rms(errors["column"]) < 0.01
+    assert abs(errors["surface"].mean()) < 0.002
+
+
+def test_bias_under_uneven_lighting() -> None:
+    """A lamp that falls off by a third along the sample and a fifth across the frame."""
+    clean = edge_image(_tilted, (96, 512), 1.2)
+    rows, columns = np.mgrid[:96, :512]
+    lamp = (1 - 0.33 * (columns / 512) ** 2) * (0.8 + 0.2 * rows / 96)
+    edge = EdgeFinder(Optics(1.2, True)).find((clean * lamp).astype(np.float32))
+    error = (edge.rows - _tilted(np.arange(512.0)))[20:-20]
+    assert _rms(error) < 0.01
+
+
+@pytest.mark.parametrize("contrast_to_noise", [5, 20, 100])
+@pytest.mark.parametrize("blur", [0.5, 1.2, 3.0])
+def test_columns_reach_the_bound(blur: float, contrast_to_noise: float) -> None:
+    """Random error within 1.1 of the bound; 20,000 columns leave 0.5 % of statistical uncertainty."""
+    errors = _errors(_tilted, blur, contrast_to_noise, n_images=40)
+    bounds = [column_bound(contrast_to_noise, blur, phase=row % 1) for row in _tilted(np.arange(12.0, 500))]
+    assert _rms(errors["column"] / bounds) < 1.1
+    assert 0.95 < _rms(errors["column_reduced"]) < 1.11
+
+
+@pytest.mark.parametrize("contrast_to_noise", [5, 20, 100])
+@pytest.mark.parametrize("blur", [0.5, 1.2, 2.0, 3.0])
+def test_regularised_surface_reaches_the_bound(blur: float, contrast_to_noise: float) -> None:
+    """All errors, bias included, within 1.3 of the bound for surfaces band-limited at the resolution."""
+    resolution = EdgeFinder(Optics(blur, True)).resolution
+    assert resolution == pytest.approx(10.0) or blur > 1.9
+    errors = [
+        _errors(_band_limited(resolution, i), blur, contrast_to_noise, n_images=4, seed=100 * i)
+        for i in range(10)
+    ]
+    total = _rms(np.array([error["surface"] for error in errors]))
+    assert total < 1.3 * band_limited_bound(contrast_to_noise, blur, resolution)
+    assert total > 0.8 * band_limited_bound(contrast_to_noise, blur, resolution)
+
+
+@pytest.mark.parametrize("blur", [0.5, 1.2, 2.0, 3.0])
+def test_wrinkles_of_twenty_pixels_keep_their_amplitude(blur: float) -> None:
+    """Within 1 % of the amplitude of 1 px; the fit's own noise is 0.1 %."""
+    surface = _wrinkled(1.0, 20.0)
+    errors = _errors(surface, blur, 200, n_images=4, n_columns=1024, trim=32)
+    x = np.arange(32.0, 992.0)
+    found = errors["surface"].mean(axis=0) + surface(x) - 47.8
+    wave = np.exp(-2j * np.pi * x / 20)
+    assert abs(2 * np.mean(found * wave)) == pytest.approx(1.0, abs=0.01)
+
+
+def test_uncertainties_are_honest() -> None:
+    errors = _errors(_wrinkled(2.0, 36.3), 1.2, 20, n_images=16)
+    assert 0.9 < _rms(errors["surface_reduced"]) < 1.05  # a posterior's, so a little larger than the error
+    assert 0.97 < _rms(errors["column_reduced"]) < 1.06
+
+
+def test_pixel_locking_is_absent_and_would_be_seen() -> None:
+    finder = EdgeFinder(Optics(1.2, True))
+    locking = PixelLocking.none()
+    pulled = PixelLocking.none()
+    clean = edge_image(_tilted, (96, 512), 1.2)
+    for seed in range(20):
+        edge = finder.find(with_noise(clean, 20, seed))
+        residual = edge.column_rows - edge.rows
+        locking += PixelLocking.of(edge.rows, residual)
+        pulled += PixelLocking.of(edge.rows, residual + 0.02 * np.sin(2 * np.pi * edge.rows))
+    assert locking.amplitude < 0.005
+    assert pulled.amplitude == pytest.approx(0.02 / np.sqrt(2), abs=0.004)
