@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import prange
 
-from wrinklewave._jit import parallel, scalar, serial
+from wrinklewave._jit import parallel, scalar, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.elements.one_point import HOURGLASS_STIFFNESS
 from wrinklewave.dynamics.elements.quadrilateral import bulk_viscosity, squared_length
@@ -76,10 +76,14 @@ def _overstress_2pk(q, first, memory, terms, factors, j, i, back):
 
 
 @scalar
+def inverse_or_zero(share):
+    """1 / share, or 0 for a term that has none."""
+    return 1.0 / share if share > 0.0 else 0.0
+
+
+@scalar
 def _spring_energy(q, first, m, memory, terms, factors, j, i, share):
     """tau : tau / (4 mu_m) of one Prony spring, exact for small strain; tau is its Kirchhoff stress."""
-    if share <= 0.0:
-        return 0.0
     k = (len(memory) // len(terms)) * m + first
     b = factors[m, 2]
     H11, H22 = memory[k][j, i] + b * q.s11, memory[k + 1][j, i] + b * q.s22
@@ -90,65 +94,7 @@ def _spring_energy(q, first, m, memory, terms, factors, j, i, share):
     M11, M12 = S11 * q.C11 + S12 * q.C12, S11 * q.C12 + S12 * q.C22
     M21, M22 = S12 * q.C11 + S22 * q.C12, S12 * q.C12 + S22 * q.C22
     S33 = H33 - third
-    return q.J23 * q.J23 * (M11 * M11 + 2.0 * M12 * M21 + M22 * M22 + S33 * S33) / (4.0 * share)
-
-
-@serial
-def _survey_row(j, dt, a, memory, terms, out):
-    layer = a.layer[j]
-    factors, shares = a.factors[layer], a.terms[layer]
-    mu, K, linear, quadratic, hourglass = a.moduli[layer]
-    n, last = n_points(memory, terms), bulk_place(memory, terms)
-    stride = len(memory) // len(terms)
-    out[:] = 0.0
-    out[J_LEAST], out[J_MOST] = 1.0, 1.0
-    for i in range(a.X.shape[1] - 1):
-        X, Y, u, w = corners(a.X, j, i), corners(a.Y, j, i), corners(a.u, j, i), corners(a.w, j, i)
-        vx, vy = corners(a.vx, j, i), corners(a.vy, j, i)
-        u0 = (u[0] - dt * vx[0], u[1] - dt * vx[1], u[2] - dt * vx[2], u[3] - dt * vx[3])
-        w0 = (w[0] - dt * vy[0], w[1] - dt * vy[1], w[2] - dt * vy[2], w[3] - dt * vy[3])
-        A = area(X, Y)
-        e, e0 = volume_change(X, Y, u, w), volume_change(X, Y, u0, w0)
-        out[STORED] += 0.25 * K * A * (e * e + e0 * e0)
-        rate = (e - e0) / dt
-        J = 1.0 + 0.5 * (e + e0)
-        L2 = squared_length(X[0] - X[2], Y[0] - Y[2], X[1] - X[3], Y[1] - Y[3], A)
-        out[BULK_VISCOUS] += A * bulk_viscosity(rate / J, L2, linear, quadratic) * rate
-        if last:
-            p = overstresses(memory, terms, factors, last, j, i, e, False)
-            p0 = overstresses(memory, terms, factors, last, j, i, e0, True)
-            out[VISCOUS] += 0.5 * A * (p + p0) * rate
-            for m in range(len(terms)):
-                H = memory[stride * m + last][j, i] + factors[m, 4] * e
-                if shares[m, 1] > 0.0:
-                    out[SPRINGS] += 0.5 * A * H * H / shares[m, 1]
-        for g in range(n):
-            xi, eta = point_place(g, n)
-            bx, by, D = point_gradients(xi, eta, X, Y)
-            D *= 4.0 / n
-            q, q0 = deformation(bx, by, u, w), deformation(bx, by, u0, w0)
-            energy = q.J23 * (q.C11 + q.C22 + 1.0) + q0.J23 * (q0.C11 + q0.C22 + 1.0) - 6.0
-            out[STORED] += 0.25 * D * mu * energy
-            S11, S22, S12 = _overstress_2pk(q, 4 * g, memory, terms, factors, j, i, False)
-            T11, T22, T12 = _overstress_2pk(q0, 4 * g, memory, terms, factors, j, i, True)
-            work = (S11 + T11) * (q.C11 - q0.C11) + (S22 + T22) * (q.C22 - q0.C22)
-            work += 2.0 * (S12 + T12) * (q.C12 - q0.C12)
-            out[VISCOUS] += 0.25 * D * work / dt
-            for m in range(len(terms)):
-                out[SPRINGS] += D * _spring_energy(q, 4 * g, m, memory, terms, factors, j, i, shares[m, 0])
-            out[J_LEAST], out[J_MOST] = min(out[J_LEAST], q.J), max(out[J_MOST], q.J)
-        bx, by, D = point_gradients(0.0, 0.0, X, Y)
-        qx, qy = _hourglass(X, Y, bx, by, u), _hourglass(X, Y, bx, by, w)
-        amplitude = 0.25 * np.sqrt((qx * qx + qy * qy) / A)
-        out[HOURGLASS_AMPLITUDE] = max(out[HOURGLASS_AMPLITUDE], amplitude)
-        if n == 1:
-            qx0, qy0 = _hourglass(X, Y, bx, by, u0), _hourglass(X, Y, bx, by, w0)
-            stiffness = hourglass * HOURGLASS_STIFFNESS * A * (dot(bx, bx) + dot(by, by))
-            Qx = mu * (qx + qx0) + overstresses(memory, terms, factors, 4, j, i, qx, False)
-            Qx += overstresses(memory, terms, factors, 4, j, i, qx0, True)
-            Qy = mu * (qy + qy0) + overstresses(memory, terms, factors, 5, j, i, qy, False)
-            Qy += overstresses(memory, terms, factors, 5, j, i, qy0, True)
-            out[HOURGLASS] += 0.5 * stiffness * (Qx * (qx - qx0) + Qy * (qy - qy0)) / dt
+    return q.J23 * q.J23 * (M11 * M11 + 2.0 * M12 * M21 + M22 * M22 + S33 * S33) * 0.25 * inverse_or_zero(share)
 
 
 @scalar
@@ -158,13 +104,89 @@ def _hourglass(X, Y, bx, by, u):
     return h - hX * dot(bx, u) - hY * dot(by, u)
 
 
+@vector
+def _survey_row(j, dt, a, memory, terms, out):
+    """Contribution of each element of row ``j``, in ``out`` [N_COLUMNS, n_columns]: sums are taken afterwards, so that
+    this loop vectorises."""
+    r = uintp(j)
+    layer = a.layer[j]
+    factors, shares = a.factors[layer], a.terms[layer]
+    mu, K, linear, quadratic, hourglass = a.moduli[layer]
+    n, last = n_points(memory, terms), bulk_place(memory, terms)
+    stride = len(memory) // len(terms)
+    for i in range(uintp(a.X.shape[1] - 1)):
+        X, Y, u, w = corners(a.X, r, i), corners(a.Y, r, i), corners(a.u, r, i), corners(a.w, r, i)
+        vx, vy = corners(a.vx, r, i), corners(a.vy, r, i)
+        u0 = (u[0] - dt * vx[0], u[1] - dt * vx[1], u[2] - dt * vx[2], u[3] - dt * vx[3])
+        w0 = (w[0] - dt * vy[0], w[1] - dt * vy[1], w[2] - dt * vy[2], w[3] - dt * vy[3])
+        A = area(X, Y)
+        e, e0 = volume_change(X, Y, u, w), volume_change(X, Y, u0, w0)
+        springs, viscous, control, J_least, J_most = 0.0, 0.0, 0.0, 1e300, 0.0
+        stored = 0.25 * K * A * (e * e + e0 * e0)
+        rate = (e - e0) / dt
+        J = 1.0 + 0.5 * (e + e0)
+        L2 = squared_length(X[0] - X[2], Y[0] - Y[2], X[1] - X[3], Y[1] - Y[3], A)
+        bulk_viscous = A * bulk_viscosity(rate / J, L2, linear, quadratic) * rate
+        if last:
+            for m in range(len(terms)):
+                b = factors[m, 4]
+                Z = memory[stride * m + last][r, i]
+                H, H0 = Z + b * e, (Z + b * e0) / factors[m, 1]
+                viscous += 0.5 * A * (H + H0) * rate
+                springs += 0.5 * A * H * H * inverse_or_zero(shares[m, 1])
+        for g in range(n):
+            xi, eta = point_place(g, n)
+            bx, by, D = point_gradients(xi, eta, X, Y)
+            D *= 4.0 / n
+            q, q0 = deformation(bx, by, u, w), deformation(bx, by, u0, w0)
+            energy = q.J23 * (q.C11 + q.C22 + 1.0) + q0.J23 * (q0.C11 + q0.C22 + 1.0) - 6.0
+            stored += 0.25 * D * mu * energy
+            S11, S22, S12 = _overstress_2pk(q, 4 * g, memory, terms, factors, r, i, False)
+            T11, T22, T12 = _overstress_2pk(q0, 4 * g, memory, terms, factors, r, i, True)
+            work = (S11 + T11) * (q.C11 - q0.C11) + (S22 + T22) * (q.C22 - q0.C22)
+            work += 2.0 * (S12 + T12) * (q.C12 - q0.C12)
+            viscous += 0.25 * D * work / dt
+            for m in range(len(terms)):
+                springs += D * _spring_energy(q, 4 * g, m, memory, terms, factors, r, i, shares[m, 0])
+            J_least, J_most = min(J_least, q.J), max(J_most, q.J)
+        bx, by, D = point_gradients(0.0, 0.0, X, Y)
+        qx, qy = _hourglass(X, Y, bx, by, u), _hourglass(X, Y, bx, by, w)
+        out[HOURGLASS_AMPLITUDE, i] = np.sqrt((qx * qx + qy * qy) / (16.0 * A))
+        if n == 1:
+            qx0, qy0 = _hourglass(X, Y, bx, by, u0), _hourglass(X, Y, bx, by, w0)
+            stiffness = hourglass * HOURGLASS_STIFFNESS * A * (dot(bx, bx) + dot(by, by))
+            Qx = mu * (qx + qx0) + overstresses(memory, terms, factors, 4, r, i, qx, False)
+            Qx += overstresses(memory, terms, factors, 4, r, i, qx0, True)
+            Qy = mu * (qy + qy0) + overstresses(memory, terms, factors, 5, r, i, qy, False)
+            Qy += overstresses(memory, terms, factors, 5, r, i, qy0, True)
+            control += 0.5 * stiffness * (Qx * (qx - qx0) + Qy * (qy - qy0)) / dt
+        out[STORED, i], out[SPRINGS, i], out[VISCOUS, i], out[BULK_VISCOUS, i] = stored, springs, viscous, bulk_viscous
+        out[HOURGLASS, i], out[J_LEAST, i], out[J_MOST, i] = control, J_least, J_most
+
+
+@vector
+def _sum(values):
+    total = 0.0
+    for i in range(values.size):
+        total += values[i]
+    return total
+
+
 @parallel
-def survey(dt, a, memory, terms, out):
-    """Fill ``out`` [n_rows, N_COLUMNS] with the sums, or extremes, of each element row."""
+def survey(dt, a, memory, terms, work, out):
+    """Fill ``out`` [n_rows, N_COLUMNS] with the sums, or extremes, of each element row.
+
+    ``work`` [n_parts, N_COLUMNS, n_columns] is a buffer. ``dt`` [s] is the step that led to the present state.
+    """
     n_parts = a.shares.size - 1
     for part in prange(n_parts):
+        row = work[part]
         for j in range(a.shares[part], a.shares[part + 1]):
-            _survey_row(j, dt, a, memory, terms, out[j])
+            _survey_row(j, dt, a, memory, terms, row)
+            for column in range(HOURGLASS_AMPLITUDE):
+                out[j, column] = _sum(row[column])
+            out[j, HOURGLASS_AMPLITUDE] = row[HOURGLASS_AMPLITUDE].max()
+            out[j, J_LEAST], out[j, J_MOST] = row[J_LEAST].min(), row[J_MOST].max()
 
 
 def kinetic_energy(inverse_mass: np.ndarray, vx: np.ndarray, vy: np.ndarray) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numba import prange
 
-from wrinklewave._jit import parallel, serial
+from wrinklewave._jit import parallel, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.energy import deformation, overstresses
 from wrinklewave.dynamics.points import bulk_place, corners, n_points, point_place, volume_change
@@ -17,40 +17,42 @@ per current length, -dv_x/dx [1/s], Cauchy stress (tension > 0) [Pa], volume rat
 STRAIN, RATE, NOMINAL, XX, YY, XY, VOLUME = range(7)
 
 
-@serial
+@vector
 def _fields_row(j, a, memory, terms, out):
+    r = uintp(j)
     layer = a.layer[j]
     factors = a.factors[layer]
     mu, K = a.moduli[layer, 0], a.moduli[layer, 1]
     n, last = n_points(memory, terms), bulk_place(memory, terms)
-    for i in range(a.X.shape[1] - 1):
-        X, Y, u, w = corners(a.X, j, i), corners(a.Y, j, i), corners(a.u, j, i), corners(a.w, j, i)
-        vx = corners(a.vx, j, i)
+    for i in range(uintp(a.X.shape[1] - 1)):
+        X, Y, u, w = corners(a.X, r, i), corners(a.Y, r, i), corners(a.u, r, i), corners(a.w, r, i)
+        vx = corners(a.vx, r, i)
         e = volume_change(X, Y, u, w)
         p = K * e
         if last:
             for m in range(len(terms)):
-                p += memory[(last + 1) * m + last][j, i] + factors[m, 4] * e
-        out[:, j, i] = 0.0
+                p += memory[(last + 1) * m + last][r, i] + factors[m, 4] * e
+        strain, rate, nominal, xx, yy, xy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for g in range(n):
             xi, eta = point_place(g, n)
             bx, by, _ = point_gradients(xi, eta, X, Y)
             q = deformation(bx, by, u, w)
-            A11 = mu * q.s11 + overstresses(memory, terms, factors, 4 * g, j, i, q.s11, False)
-            A22 = mu * q.s22 + overstresses(memory, terms, factors, 4 * g + 1, j, i, q.s22, False)
-            A12 = mu * q.s12 + overstresses(memory, terms, factors, 4 * g + 2, j, i, q.s12, False)
-            A33 = mu * q.s33 + overstresses(memory, terms, factors, 4 * g + 3, j, i, q.s33, False)
+            A11 = mu * q.s11 + overstresses(memory, terms, factors, 4 * g, r, i, q.s11, False)
+            A22 = mu * q.s22 + overstresses(memory, terms, factors, 4 * g + 1, r, i, q.s22, False)
+            A12 = mu * q.s12 + overstresses(memory, terms, factors, 4 * g + 2, r, i, q.s12, False)
+            A33 = mu * q.s33 + overstresses(memory, terms, factors, 4 * g + 3, r, i, q.s33, False)
             Ji2 = q.J23 * q.J23 * q.J23
             S11, S22, S12 = second_piola_kirchhoff(A11, A22, A12, A33, q.C11, q.C22, q.C12, q.J, q.J23, Ji2, p)
             P11, P12 = q.F11 * S11 + q.F12 * S12, q.F11 * S12 + q.F12 * S22
             P21, P22 = q.F21 * S11 + q.F22 * S12, q.F21 * S12 + q.F22 * S22
-            out[STRAIN, j, i] += (1.0 - q.F11) / n
-            out[RATE, j, i] -= (dot(bx, vx) * q.F22 - dot(by, vx) * q.F21) / (q.J * n)
-            out[NOMINAL, j, i] -= P11 / n
-            out[XX, j, i] += (P11 * q.F11 + P12 * q.F12) / (q.J * n)
-            out[YY, j, i] += (P21 * q.F21 + P22 * q.F22) / (q.J * n)
-            out[XY, j, i] += (P11 * q.F21 + P12 * q.F22) / (q.J * n)
-        out[VOLUME, j, i] = 1.0 + e
+            strain += (1.0 - q.F11) / n
+            rate -= (dot(bx, vx) * q.F22 - dot(by, vx) * q.F21) / (q.J * n)
+            nominal -= P11 / n
+            xx += (P11 * q.F11 + P12 * q.F12) / (q.J * n)
+            yy += (P21 * q.F21 + P22 * q.F22) / (q.J * n)
+            xy += (P11 * q.F21 + P12 * q.F22) / (q.J * n)
+        out[STRAIN, r, i], out[RATE, r, i], out[NOMINAL, r, i] = strain, rate, nominal
+        out[XX, r, i], out[YY, r, i], out[XY, r, i], out[VOLUME, r, i] = xx, yy, xy, 1.0 + e
 
 
 @parallel

@@ -6,7 +6,7 @@ point of weight 4 and two hourglass components, a mean-dilatation element four p
 
 from __future__ import annotations
 
-from wrinklewave._jit import scalar
+from wrinklewave._jit import scalar, uintp
 from wrinklewave.dynamics.elements.mean_dilatation import GAUSS
 
 ONE_POINT_COMPONENTS, MEAN_DILATATION_COMPONENTS = (6, 7), (16, 17)
@@ -36,8 +36,9 @@ def point_place(g, n):
 
 @scalar
 def corners(field, j, i):
-    """Values of a nodal field at the corners 1 to 4 of element (j, i)."""
-    return field[j, i], field[j, i + 1], field[j + 1, i + 1], field[j + 1, i]
+    """Values of a nodal field at the corners 1 to 4 of element (j, i), unsigned indices."""
+    k, s = i + uintp(1), j + uintp(1)
+    return field[j, i], field[j, k], field[s, k], field[s, i]
 
 
 @scalar

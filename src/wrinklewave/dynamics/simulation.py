@@ -22,7 +22,7 @@ from wrinklewave.dynamics.energy import (
     survey,
 )
 from wrinklewave.dynamics.fields import FIELDS, element_fields
-from wrinklewave.dynamics.stable_step import PLACE, STEP, stable_step
+from wrinklewave.dynamics.stable_step import stable_steps
 from wrinklewave.dynamics.step import advance
 from wrinklewave.errors import RunError
 from wrinklewave.materials.neo_hookean import J_MAX, J_MIN
@@ -94,8 +94,10 @@ class Simulation:
 
     def __post_init__(self) -> None:
         rows = self.model.mesh.shape[0]
-        self._steps = np.zeros((rows, 2))
+        self._steps = np.zeros(self.model.mesh.shape)
         self._survey = np.zeros((rows, N_COLUMNS))
+        parts = self.model.arrays.shares.size - 1
+        self._row_work = np.zeros((parts, N_COLUMNS, self.model.mesh.shape[1]))
 
     @property
     def time(self) -> float:
@@ -141,13 +143,12 @@ class Simulation:
         Raises:
             RunError: as :meth:`run`.
         """
-        m = self.model
-        stable_step(m.arrays, m.memory_rows, m.terms, m.density, self._steps)
-        row = int(np.argmin(self._steps[:, STEP]))  # the first NaN, if there is one
-        dt = float(self._steps[row, STEP])
+        stable_steps(self.model.arrays, self.model.density, self._steps)
+        row, column = np.unravel_index(int(np.argmin(self._steps)), self._steps.shape)  # the first NaN, if any
+        dt = float(self._steps[row, column])
         self.first_dt = self.first_dt or dt
         if not dt > SMALLEST_STEP * self.first_dt:
-            raise self._failure(row, int(self._steps[row, PLACE]), dt)
+            raise self._failure(int(row), int(column), dt)
         return dt
 
     def _go(self, start: float, stop: float) -> None:
@@ -169,7 +170,7 @@ class Simulation:
 
     def _record(self, t: float, dt: float) -> None:
         m, a = self.model, self.model.arrays
-        survey(dt, a, m.memory_rows, m.terms, self._survey)
+        survey(dt, a, m.memory_rows, m.terms, self._row_work, self._survey)
         s = self._survey.sum(axis=0)
         power, middle = s[[2, BULK_VISCOUS, HOURGLASS]], t - dt / 2
         self.work += 0.5 * (self.power + power) * (middle - self.power_time)
@@ -209,7 +210,6 @@ class Simulation:
 
     def _failure(self, row: int, column: int, dt: float) -> RunError:
         X, Y = self.model.arrays.X, self.model.arrays.Y
-        column = max(column, 0)
         place = f"X = {X[row, column] * 1e3:.3f} mm, Y = {Y[row, column] * 1e3:.3f} mm"
         what = "the state is not finite" if np.isnan(dt) else "the stable step has collapsed: an element is inverted or nearly so"
         return RunError(
