@@ -23,8 +23,12 @@ from wrinklewave.dynamics.boundary import (
 )
 from wrinklewave.dynamics.points import MEAN_DILATATION_COMPONENTS, ONE_POINT_COMPONENTS
 from wrinklewave.dynamics.step import Arrays
+from wrinklewave.errors import InputError
 from wrinklewave.materials.moduli import plane_wave_modulus, substrate_moduli
+from wrinklewave.mesh.bilayer import bilayer, warn_if_coarse
 from wrinklewave.mesh.block import GridMesh, block
+from wrinklewave.mesh.imperfection import with_imperfection
+from wrinklewave.theory.film import critical_values, film_material
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -69,14 +73,7 @@ class Model:
 
 def build_model(case: Case, *, threads: int = 1) -> Model:
     """Mesh, materials and edges of a case, at rest."""
-    half = case.block.height / 2
-    mesh = block(
-        length=case.block.length,
-        bottom=0.0 if case.block.symmetry else -half,
-        top=half,
-        elements=case.mesh.elements,
-        grading=case.mesh.grading,
-    )
+    mesh, materials = layers(case)
     left, motion, across = _drive(case)
     boundary = Boundary(
         left=left,
@@ -92,7 +89,7 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
     )
     return assemble(
         mesh,
-        [substrate_moduli(case.substrate)],
+        materials,
         boundary,
         one_point=case.mesh.element == "one-point",
         hourglass=case.mesh.hourglass.stiffness,
@@ -100,6 +97,48 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
         mass_scaling=case.solver.mass_scaling,
         threads=threads,
     )
+
+
+def layers(case: Case) -> tuple[GridMesh, list[Viscoelastic]]:
+    """Undeformed mesh of a case, and the material of each of its layers: the film is one if it is to be resolved.
+
+    Raises:
+        InputError: if there are too few elements across the block for a film.
+    """
+    half = case.block.height / 2
+    bottom = 0.0 if case.block.symmetry else -half
+    substrate, (columns, rows), grading = (
+        substrate_moduli(case.substrate),
+        case.mesh.elements,
+        case.mesh.grading,
+    )
+    film = case.film
+    if film is None or case.wrinkles.model != "resolved":
+        flat = block(
+            length=case.block.length, bottom=bottom, top=half, elements=(columns, rows), grading=grading
+        )
+        return flat, [substrate]
+    film_rows, interface = film.elements_through_thickness, half - film.thickness
+    if rows <= film_rows:
+        raise InputError(
+            f"{rows} elements across the block, {film_rows} of them in the film",
+            key="mesh.elements",
+            expected="some for the substrate as well",
+        )
+    mesh = bilayer(
+        length=case.block.length,
+        bottom=bottom,
+        top=half,
+        thickness=film.thickness,
+        columns=columns,
+        substrate_rows=rows - film_rows,
+        film_rows=film_rows,
+        grading=grading,
+    )
+    warn_if_coarse(mesh, critical_values(film, case.substrate)[1])
+    if film.imperfection is not None:
+        mesh = with_imperfection(mesh, film.imperfection, interface=interface, depth=interface - bottom)
+    return mesh, [substrate, film_material(film, case.substrate)]
 
 
 def assemble(
@@ -131,7 +170,9 @@ def assemble(
         vy=np.zeros(nodes),
         inverse_mass=1.0 / lumped_mass(mesh, density),
         layer=mesh.layer,
-        moduli=np.array([_moduli(m, rho, bulk_viscosity, hourglass) for m, rho in zip(materials, density, strict=True)]),
+        moduli=np.array(
+            [_moduli(m, rho, bulk_viscosity, hourglass) for m, rho in zip(materials, density, strict=True)]
+        ),
         terms=terms,
         factors=np.ones((len(materials), n_terms, 5)),
         shares=np.linspace(0, rows, parts + 1).astype(np.int64),
