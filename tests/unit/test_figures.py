@@ -37,7 +37,13 @@ def _snapshots() -> figures.StrainSnapshots:
 def _history() -> dict[str, np.ndarray]:
     time = np.linspace(0.0, 3e-3, 200)
     work = 10.0 * (1 - np.exp(-time / 1e-3))
-    energies = {"elastic_J_per_m": 0.5, "kinetic_J_per_m": 0.2, "viscous_work_J_per_m": 0.295, "hourglass_J_per_m": 0.005}
+    energies = {
+        "elastic_J_per_m": 0.5,
+        "kinetic_J_per_m": 0.2,
+        "viscous_work_J_per_m": 0.295,
+        "springs_J_per_m": 0.1,
+        "hourglass_J_per_m": 0.005,
+    }
     return {"time_s": time, "external_work_J_per_m": work, "imbalance_J_per_m": 1e-4 * work} | {
         name: share * work for name, share in energies.items()
     }

@@ -49,7 +49,12 @@ def context(tmp_path: Path) -> ReportContext:
         },
         figures={"fig_2c_displacement": picture},
         comparison=paper_table({"relaxing": {"wavefront_speed_m_per_s": 110.0}}),
-        history={"time_s": time, "external_work_J_per_m": 2 * time, "friction_J_per_m": 0 * time, "imbalance_J_per_m": 1e-3 * time},
+        history={
+            "time_s": time,
+            "external_work_J_per_m": 2 * time,
+            "friction_J_per_m": 0 * time,
+            "imbalance_J_per_m": 1e-3 * time,
+        },
         warnings=["hourglass energy is 2 % of the internal energy"],
         case='[case]\nname = "impact"\n',
         versions={"wrinklewave": "0.1", "numpy": np.__version__},
@@ -93,10 +98,12 @@ def test_an_empty_report_has_no_empty_sections(tmp_path: Path) -> None:
     [
         ("wavefront_speed_m_per_s", 60.04, ("wavefront speed", "60.04", "m/s")),
         ("wrinkle_amplitude_max_m", 1.714e-4, ("wrinkle amplitude max", "0.1714", "mm")),
+        ("wall_time_s", 62.03, ("wall time", "62.03", "s")),
+        ("elements", 14948, ("elements", "14948", "")),
         ("contact_time_s", 31e-6, ("contact time", "0.031", "ms")),
         ("strain_rate_max_per_s", 560.0, ("strain rate max", "560", "1/s")),
-        ("element_updates_per_s", 4.2e7, ("element", "42", "million/s")),
-        ("hourglass_energy_share_max", 0.004, ("hourglass energy share max", "0.004", "")),
+        ("element_updates_per_s", 4.2e7, ("element updates", "42", "million/s")),
+        ("hourglass_energy_share_max", 0.004, ("hourglass energy share max", "0.4", "%")),
         ("separation_time_s", None, ("separation time", "–", "ms")),
     ],
 )

@@ -14,7 +14,8 @@ if TYPE_CHECKING:
 SHARES = {
     "elastic_J_per_m": ("elastic, stored", "#0000a7"),
     "kinetic_J_per_m": ("kinetic", "#c1272d"),
-    "viscous_work_J_per_m": ("viscous work", "#008176"),
+    "springs_J_per_m": ("Prony springs, stored", "#6a8fd8"),
+    "dissipated_J_per_m": ("viscous dissipation", "#008176"),
     "bulk_viscosity_J_per_m": ("bulk viscosity", "#eecc16"),
     "hourglass_J_per_m": ("hourglass", "#b34fc4"),
     "contact_loss_J_per_m": ("contact loss", "#7f7f7f"),
@@ -31,8 +32,9 @@ SHARES = {
 )
 def energy_balance(inputs: FigureInputs) -> Figure:
     """Stacked energies with the external work, and the relative imbalance below."""
-    history = inputs.history
-    assert history is not None  # by `possible`
+    assert inputs.history is not None  # by `possible`
+    history = dict(inputs.history)
+    history["dissipated_J_per_m"] = history["viscous_work_J_per_m"] - history["springs_J_per_m"]
     time = MILLI * history["time_s"]
     drawing, (energies, imbalance) = new_figure(
         6.3,
@@ -40,7 +42,7 @@ def energy_balance(inputs: FigureInputs) -> Figure:
         rows=2,
         sharex=True,
         height_ratios=(3, 1),
-        margins=Margins(left=0.75, right=1.6, between_rows=0.3),
+        margins=Margins(left=0.75, right=1.75, between_rows=0.3),
     )
     names = [name for name in SHARES if name in history]
     energies.stackplot(

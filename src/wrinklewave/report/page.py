@@ -125,12 +125,16 @@ def _figure(name: str, file: Path) -> dict[str, str]:
 
 
 def _balance(history: Mapping[str, Array] | None) -> dict[str, Any] | None:
-    """A few lines of the energy balance, evenly spread in time, without columns that are zero throughout."""
+    """A few lines of the energy balance, evenly spread in time, without energies that are zero throughout."""
     if history is None:
         return None
     rows = np.unique(np.linspace(0, len(history["time_s"]) - 1, BALANCE_LINES).astype(int))
     columns = {name: np.asarray(values) for name, values in history.items()}
-    kept = {name: values for name, values in columns.items() if name == "time_s" or np.any(values[rows] != 0)}
+    kept = {
+        name: values
+        for name, values in columns.items()
+        if name == "time_s" or (name.endswith("_J_per_m") and np.any(values[rows] != 0.0))
+    }
     headings = [shown(name, None) for name in kept]
     lines = [[shown(name, float(values[row])).value for name, values in kept.items()] for row in rows]
     return {"names": [f"{heading.label} {heading.unit}".strip() for heading in headings], "lines": lines}
