@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.dynamics.checkpoint import Record
-from wrinklewave.dynamics.fields import FIELDS, NOMINAL, RATE, STRAIN, depth_weights, to_nodes
+from wrinklewave.dynamics.fields import NOMINAL, RATE, STRAIN, depth_weights, to_nodes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from numpy.typing import NDArray
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
     from wrinklewave.dynamics.simulation import Simulation
 
 SURFACE = ("time", "x_p", "y_p", "strain_xx", "strain_rate_xx", "stress_xx")
-NODAL = ("u_x", "u_y", "v_x", "v_y")
 
 
 @dataclass(eq=False)
@@ -55,7 +55,7 @@ class FieldFrame:
 
     Args:
         time: [s].
-        nodal: displacement and velocity, shape [4, n_rows + 1, n_columns + 1], see :data:`NODAL`.
+        nodal: u_x, u_y [m], v_x, v_y [m/s], shape [4, n_rows + 1, n_columns + 1].
         elements: shape [len(FIELDS), n_rows, n_columns].
     """
 
@@ -100,6 +100,11 @@ class FieldStore:
         """Times of all frames [s]."""
         return np.array([self[k].time for k in range(len(self))])
 
+    def nearest(self, times: Sequence[float]) -> list[FieldFrame]:
+        """The frames nearest to the given times [s]."""
+        known = self.times()
+        return [self[int(np.argmin(np.abs(known - time)))] for time in times]
+
     def forget_from(self, index: int) -> None:
         """Drop the frames from ``index`` on: a restart will make them again."""
         assert self.folder is not None  # only runs with a folder restart
@@ -116,6 +121,3 @@ class FieldStore:
     def _files(self) -> list[Path]:
         assert self.folder is not None
         return sorted(self.folder.glob("*.npz"))
-
-
-__all__ = ["FIELDS", "NODAL", "SURFACE", "FieldFrame", "FieldStore", "SurfaceRecorder"]

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from wrinklewave import surface
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.vtkhdf import write_vtkhdf
@@ -19,7 +17,6 @@ if TYPE_CHECKING:
 
     from wrinklewave.config import Case
     from wrinklewave.experiments.simulate import Run
-    from wrinklewave.mesh.block import GridMesh
 
 
 @dataclass(frozen=True)
@@ -30,10 +27,12 @@ class RunFolder:
 
     @property
     def checkpoint(self) -> Path:
+        """State of a run that has not ended."""
         return self.path / "checkpoint.h5"
 
     @property
     def frames(self) -> Path:
+        """Folder of the field frames of a run that has not ended."""
         return self.path / ".frames"
 
     @classmethod
@@ -69,13 +68,14 @@ class RunFolder:
         write_history(self.path / "history.csv", run.history)
         write_json(self.path / "summary.json", run.summary)
 
-    def write_finished(self, run: Run, mesh: GridMesh) -> None:
+    def write_finished(self, run: Run) -> None:
         """Everything but figures and report; then what only a restart needs goes."""
         assert run.surface is not None  # a finished run has one
         surface.write(run.surface, self.path / "surface.nc")
-        write_vtkhdf(self.path / "fields.vtkhdf", mesh, run.fields)
+        write_vtkhdf(self.path / "fields.vtkhdf", run.mesh, run.fields)
         self.write_unfinished(run)
         self.checkpoint.unlink(missing_ok=True)
+        run.fields.remove()
 
     def _clear(self) -> None:
         self.checkpoint.unlink(missing_ok=True)

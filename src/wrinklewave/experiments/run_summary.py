@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import platform
-from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave._version import __version__
 from wrinklewave.materials.moduli import substrate_moduli
 
 if TYPE_CHECKING:
@@ -50,9 +47,3 @@ def material_scalars(case: Case) -> dict[str, float]:
         "bulk_over_shear_instantaneous": substrate.K_instantaneous / substrate.mu_instantaneous,
         "poisson_ratio_instantaneous": substrate.nu_instantaneous,
     }
-
-
-def versions() -> dict[str, str]:
-    """What made the result."""
-    packages = {name: version(name) for name in ("numpy", "numba", "scipy", "xarray", "h5py")}
-    return {"wrinklewave": __version__, "python": platform.python_version(), **packages, "machine": platform.machine()}

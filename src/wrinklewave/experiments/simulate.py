@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -17,10 +16,12 @@ from wrinklewave.config import Case, load_case
 from wrinklewave.dynamics.checkpoint import read_checkpoint, write_checkpoint
 from wrinklewave.dynamics.model import build_model
 from wrinklewave.dynamics.simulation import HISTORY, Simulation
+from wrinklewave.environment import processor, versions
 from wrinklewave.errors import InputError, RunError
 from wrinklewave.experiments.interruption import interruptible
 from wrinklewave.experiments.recording import FieldStore, SurfaceRecorder
 from wrinklewave.experiments.run_folder import RunFolder
+from wrinklewave.experiments.run_summary import energy_scalars, material_scalars
 from wrinklewave.experiments.simulated_surface import simulated_surface
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wrinklewave.analysis.results import Analysis
+    from wrinklewave.experiments.recording import FieldFrame
+    from wrinklewave.mesh.block import GridMesh
 
 
 class Outcome(Enum):
@@ -69,7 +72,9 @@ class Run:
         case: as resolved.
         outcome: how it ended.
         history: energies and motion of the struck end against time, columns by name.
-        fields: field frames.
+        fields: all field frames of a run without a folder; with one they are in ``fields.vtkhdf``.
+        snapshots: the field frames nearest to ``analysis.times`` of the case.
+        mesh: the undeformed mesh.
         summary: scalar results with units in their names.
         surface: surface motion; None if the run did not finish.
         analysis: of the surface motion; None if the run did not finish.
@@ -80,6 +85,8 @@ class Run:
     outcome: Outcome
     history: dict[str, NDArray[np.float64]]
     fields: FieldStore
+    mesh: GridMesh
+    snapshots: list[FieldFrame] = field(default_factory=list)
     summary: dict[str, Any] = field(default_factory=dict)
     surface: xr.Dataset | None = None
     analysis: Analysis | None = None
@@ -119,19 +126,20 @@ def simulate(
     try:
         outcome = _run(case, simulation, recorder, store, folder, progress)
     except RunError as error:
-        run = Run(case, Outcome.FAILED, _history(simulation), store, folder=folder and folder.path)
+        run = Run(case, Outcome.FAILED, _history(simulation), store, simulation.model.mesh, folder=folder and folder.path)
         run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin) | {"message": str(error)}
         if folder:
             folder.write_unfinished(run)
             raise RunError(f"{error}\n  {folder.describe_checkpoint()}") from error
         raise
-    run = Run(case, outcome, _history(simulation), store, folder=folder and folder.path)
+    run = Run(case, outcome, _history(simulation), store, simulation.model.mesh, folder=folder and folder.path)
     if outcome is Outcome.FINISHED:
         run.surface = simulated_surface(case, simulation.model.mesh.X[-1], recorder.to_record())
         run.analysis = analyse(run.surface, case.analysis)
+        run.snapshots = store.nearest(case.analysis.times)
     run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin)
     if folder:
-        folder.write_finished(run, simulation.model.mesh) if run.surface is not None else folder.write_unfinished(run)
+        folder.write_finished(run) if run.surface is not None else folder.write_unfinished(run)
     return run
 
 
@@ -144,7 +152,7 @@ def _resolved(case: Case | str | Path, overrides: Sequence[str]) -> Case:
 def _use_threads(threads: int | None) -> int:
     import numba
 
-    available = min(len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1024, numba.config.NUMBA_NUM_THREADS)
+    available = min(processor().usable, numba.config.NUMBA_NUM_THREADS)
     if threads is not None and not 1 <= threads <= available:
         raise InputError(
             f"{threads} threads", key="threads", expected=f"1 to {available}, the cores that this process may use"
@@ -224,8 +232,6 @@ def _history(simulation: Simulation) -> dict[str, NDArray[np.float64]]:
 
 def run_summary(run: Run, simulation: Simulation, threads: int, seconds: float) -> dict[str, Any]:
     """Scalar results of a run, with units in their names; the analysis' own among them."""
-    from wrinklewave.experiments.run_summary import energy_scalars, material_scalars, versions
-
     summary: dict[str, Any] = {
         "name": run.case.name,
         "outcome": run.outcome.name.lower(),

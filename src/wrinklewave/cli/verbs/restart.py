@@ -1,0 +1,24 @@
+"""``wrinklewave restart``: go on with a run that was stopped."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from wrinklewave.cli.verbs.simulate import AllBulk, Threads
+
+RunDir = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the run.")]
+
+
+def restart(folder: RunDir, threads: Threads = None, all_bulk: AllBulk = False) -> None:
+    """Go on with a run from its last checkpoint; the result is that of a run that was never stopped."""
+    from wrinklewave.cli.verbs.simulate import run_and_present
+    from wrinklewave.config import load_case
+    from wrinklewave.errors import InputError
+
+    case_file = folder / "case.toml"
+    if not case_file.exists():
+        raise InputError("holds no run", file=folder, expected="the folder of an earlier run, with its case.toml")
+    run_and_present(load_case(case_file), folder, threads=threads, resume=True, overwrite=False, all_bulk=all_bulk)

@@ -1,0 +1,96 @@
+"""``wrinklewave simulate``: from a case file to fields, figures and numbers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from wrinklewave.cli.options import CaseFile, Overrides
+
+if TYPE_CHECKING:
+    from wrinklewave.config import Case
+    from wrinklewave.experiments.simulate import Run
+
+HEADLINE = (
+    "wavefront_speed_m_per_s",
+    "wavefront_speed_origin_line_m_per_s",
+    "wrinkle_speed_m_per_s",
+    "strain_rate_max_per_s",
+    "wrinkle_amplitude_max_m",
+    "energy_imbalance_max",
+    "hourglass_energy_share_max",
+    "steps",
+    "element_updates_per_s",
+)
+
+Out = Annotated[
+    Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results; default runs/NAME-OF-THE-CASE-FILE.")
+]
+Threads = Annotated[int | None, typer.Option("--threads", metavar="N", help="Default: all cores. Results do not depend on it.")]
+Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR, if there is one.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an earlier run in DIR.")]
+AllBulk = Annotated[
+    bool, typer.Option("--all-bulk", help="Also run the other two choices of bulk response, for the comparison with the paper.")
+]
+
+
+def simulate(
+    case: CaseFile,
+    out: Out = None,
+    threads: Threads = None,
+    overrides: Overrides = None,
+    resume: Resume = False,
+    overwrite: Overwrite = False,
+    all_bulk: AllBulk = False,
+) -> None:
+    """Simulate a case; write surface motion, fields, energies, figures and a report."""
+    from wrinklewave.config import load_case
+
+    loaded = load_case(case, overrides or ())
+    folder = out or Path("runs") / case.stem
+    run_and_present(loaded, folder, threads=threads, resume=resume, overwrite=overwrite, all_bulk=all_bulk)
+
+
+def run_and_present(
+    case: Case, folder: Path, *, threads: int | None, resume: bool, overwrite: bool, all_bulk: bool
+) -> None:
+    """Run a case in ``folder`` and show what came out; exit code 130 if it was interrupted."""
+    from wrinklewave.cli.console import console
+    from wrinklewave.cli.progress import simulation_progress
+    from wrinklewave.experiments.bulk_choices import other_bulk_choices
+    from wrinklewave.experiments.simulate import Outcome
+    from wrinklewave.experiments.simulate import simulate as run_case
+    from wrinklewave.report import comparison_table
+    from wrinklewave.report.run import compare_with_paper, present
+
+    out = console()
+    with simulation_progress(case.name) as progress:
+        run = run_case(case, out=folder, threads=threads, resume=resume, overwrite=overwrite, progress=progress)
+    if run.outcome is not Outcome.FINISHED:
+        out.print(f"{run.outcome.value}: wrinklewave restart {folder}")
+        raise typer.Exit(130)
+    summaries = {case.substrate.bulk_response: run.summary}
+    if all_bulk:
+        with simulation_progress(f"{case.name}, other bulk responses") as progress:
+            summaries = other_bulk_choices(
+                run, threads=threads, resume=resume, progress=lambda choice, state: progress(state)
+            )
+    rows = compare_with_paper(run, summaries)
+    present(run, rows)
+    if all_bulk:
+        out.print(comparison_table(rows))
+    _describe(run)
+
+
+def _describe(run: Run) -> None:
+    from wrinklewave.cli.console import console
+    from wrinklewave.report import summary_table
+    from wrinklewave.report.run import warnings
+
+    out = console()
+    out.print(summary_table(run.summary, HEADLINE))
+    for warning in warnings(run.summary):
+        out.print(f"[yellow]{warning}[/yellow]")
+    out.print(f"finished in {run.summary['wall_time_s']:.1f} s; look at {run.folder / 'report.html'}")  # type: ignore[operator]
