@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import struct
 import tracemalloc
 from pathlib import Path
@@ -142,6 +143,21 @@ def test_other_kinds_of_numbers_are_refused(tmp_path: Path, kind: type) -> None:
     tifffile.imwrite(tmp_path / "a.tif", np.zeros((5, 8, 9), kind))
     with pytest.raises(InputError, match="8 or 16 bit"):
         open_recording(tmp_path / "a.tif")
+
+
+def test_a_compression_that_needs_another_package(tmp_path: Path) -> None:
+    """Either it is installed and the frames are read, or the error names it."""
+    from PIL import Image as Picture
+
+    stack = _stack(np.uint8, 3)
+    first, *others = (Picture.fromarray(image) for image in stack)
+    first.save(tmp_path / "a.tif", save_all=True, append_images=others, compression="tiff_lzw")
+    if importlib.util.find_spec("imagecodecs") is None:
+        with pytest.raises(InputError, match="pip install imagecodecs"):
+            open_recording(tmp_path / "a.tif")
+        return
+    with open_recording(tmp_path / "a.tif") as source:
+        np.testing.assert_array_equal(np.stack([image for _, image in source.frames()]), stack)
 
 
 def test_no_frame_left(tmp_path: Path) -> None:

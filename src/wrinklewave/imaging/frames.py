@@ -177,11 +177,12 @@ def open_recording(path: str | Path) -> FrameSource:
         InputError: if there is nothing there, or nothing that can be read as a recording.
     """
     source = _reader(Path(path))(Path(path))
-    if len(source.unreadable) == source.n_frames:
+    if next(source.frames(), None) is None:
         source.close()
         raise InputError(
             f"none of its {source.n_frames} frames can be read; the first: {source.unreadable[0][1]}",
             file=path,
+            expected="at least one whole frame",
             cure="copy or export the recording again",
         )
     return source

@@ -78,7 +78,7 @@ class TiffSource(FrameSource):
             except FrameError:
                 raise
             except Exception as error:  # the decoders of damaged data raise whatever they stumble over
-                raise FrameError(index, str(error) or type(error).__name__, source=self.path) from error
+                raise FrameError(index, _reason(error), source=self.path) from error
         return self._as_grey(image, index)
 
     def close(self) -> None:
@@ -179,6 +179,13 @@ def _unreadable_file(path: Path, error: Exception) -> InputError:
         file=path,
         expected="a TIFF stack",
         cure="copy or export it again; not even the first frame is left",
+    )
+
+
+def _reason(error: Exception) -> str:
+    reason = str(error) or type(error).__name__
+    return (
+        f"{reason}: pip install imagecodecs, or save it uncompressed" if "imagecodecs" in reason else reason
     )
 
 
