@@ -53,7 +53,7 @@ def film(
     wire: WirePlaces = None,
     frames: Frames = 60,
     seed: Seed = 0,
-    threads: Threads = 1,
+    threads: Threads = 2,
 ) -> None:
     """Film a run with the synthetic camera: a recording, its truth, and an experiment file for measure."""
     from math import radians
