@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDTH = 10.0
+WIDTH, GAP, CAPTION, CHART = 10.0, 0.08, 0.26, 2.1  # inches
 PICTURES = 12
 
 
@@ -30,20 +30,22 @@ def contact_sheet(source: FrameSource, grey: Histogram) -> Figure:
     chosen = _spread(source)
     columns = 2 if source.shape[1] > 2.5 * source.shape[0] else 4
     rows = math.ceil(len(chosen) / columns)
-    picture_height = WIDTH / columns * source.shape[0] / source.shape[1] + 0.3
+    width = (WIDTH - GAP) / columns
+    height = width * source.shape[0] / source.shape[1] + CAPTION
+    total = rows * height + CHART
     with matplotlib.rc_context(RC):
-        figure = Figure(figsize=(WIDTH, rows * picture_height + 2.0), layout="constrained")
+        figure = Figure(figsize=(WIDTH, total))
         FigureCanvasAgg(figure)
-        parts = figure.subfigures(2, 1, squeeze=False, height_ratios=[rows * picture_height, 2.0])
-        pictures, chart = parts[0, 0], parts[1, 0]
-        axes = pictures.subplots(rows, columns, squeeze=False).ravel()
         limits = _limits(grey)
-        for place, (index, image) in zip(axes, chosen, strict=False):
-            place.imshow(image, cmap="gray", vmin=limits[0], vmax=limits[1], interpolation="antialiased")
-            place.set_title(_caption(source, index), pad=2)
-        for place in axes:
-            place.set_axis_off()
-        _draw_histogram(chart.subplots(), grey, source)
+        for place, (index, image) in enumerate(chosen):
+            left, bottom = GAP + place % columns * width, total - (place // columns + 1) * height
+            box = (left / WIDTH, bottom / total, (width - GAP) / WIDTH, (height - CAPTION) / total)
+            axes = figure.add_axes(box)
+            axes.imshow(image, cmap="gray", vmin=limits[0], vmax=limits[1], interpolation="antialiased")
+            axes.set_title(_caption(source, index), pad=2)
+            axes.set_axis_off()
+        chart = (0.7 / WIDTH, 0.5 / total, (WIDTH - 1.0) / WIDTH, (CHART - 0.9) / total)
+        _draw_histogram(figure.add_axes(chart), grey, source)
     return figure
 
 
