@@ -104,7 +104,8 @@ def test_a_sample_at_rest_can_be_drawn(tmp_path: Path) -> None:
     inputs = figures.figure_inputs(
         motion, analyse(motion, SETTINGS), positions=SETTINGS.positions, times=TIMES
     )
-    assert figures.write_all(tmp_path, inputs)
+    files = figures.write_all(tmp_path, inputs)
+    assert {figures.FIGURES[name].number for name in files} == {"4C", "4D", "5A"}
 
 
 def test_importing_figures_does_not_import_matplotlib() -> None:

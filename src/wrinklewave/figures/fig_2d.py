@@ -13,7 +13,7 @@ from wrinklewave.figures.style import BOUNDARY_COLOUR, MILLI, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-HIGHEST_FREQUENCY = 1500.0
+SHOWN_BANDWIDTHS = 4.0
 
 
 @figure(
@@ -21,9 +21,10 @@ HIGHEST_FREQUENCY = 1500.0
     number="2D",
     caption="Motion of the struck end, and the magnitude of its Fourier transform over its maximum; dashed: "
     "the frequency beyond which it stays below a tenth.",
+    possible=lambda inputs: np.isfinite(inputs.analysis.boundary.spectrum.bandwidth),
 )
 def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
-    """Displacement against time, and its spectrum up to 2 kHz."""
+    """Displacement against time, and its spectrum."""
     boundary = inputs.analysis.boundary
     drawing, (motion, spectrum) = new_figure(6.3, 2.6, columns=2)
     motion.plot(MILLI * inputs.subject.time, MILLI * boundary.displacement, color=BOUNDARY_COLOUR)
@@ -32,17 +33,17 @@ def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
             motion.axvline(
                 MILLI * moment, color="0.5", lw=0.8, ls=":" if label == "stop" else "--", label=label
             )
+    motion.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3))
     motion.set(xlabel="time (ms)", ylabel="displacement of the end (mm)")
     if motion.get_legend_handles_labels()[1]:
         motion.legend(loc="lower right")
-    shown = boundary.spectrum.frequency <= HIGHEST_FREQUENCY
+    bandwidth = boundary.spectrum.bandwidth
+    highest = min(SHOWN_BANDWIDTHS * bandwidth, boundary.spectrum.frequency[-1])
+    shown = boundary.spectrum.frequency <= highest
     spectrum.plot(
         boundary.spectrum.frequency[shown], boundary.spectrum.magnitude[shown], color=BOUNDARY_COLOUR
     )
-    bandwidth = boundary.spectrum.bandwidth
     spectrum.axvline(bandwidth, color="0.5", lw=0.8, ls="--", label=f"{bandwidth:.0f} Hz")
-    spectrum.set(
-        xlabel="frequency (Hz)", ylabel="magnitude / maximum", ylim=(0.0, 1.05), xlim=(0.0, HIGHEST_FREQUENCY)
-    )
+    spectrum.set(xlabel="frequency (Hz)", ylabel="magnitude / maximum", ylim=(0.0, 1.05), xlim=(0.0, highest))
     spectrum.legend()
     return drawing

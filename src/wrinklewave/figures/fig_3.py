@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     number="3",
     caption="Out-of-plane displacement over its maximum (A) against time at fixed laboratory positions, "
     "(B) against position at fixed times.",
+    possible=lambda inputs: inputs.surface_moves,
 )
 def displacement_curves(inputs: FigureInputs) -> Figure:
     """Cuts through the map of Fig. 2C."""

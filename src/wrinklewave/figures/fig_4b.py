@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     caption="Out-of-plane surface wrinkling after removal of the low-frequency pulse. Magenta: the wrinkle "
     "front (amplitude passes the threshold); green: the wavefront; dash-dotted: paths of material"
     " points.",
+    possible=lambda inputs: inputs.surface_moves,
 )
 def wrinkle_map(inputs: FigureInputs) -> Figure:
     """Map of the height of the wrinkles."""

@@ -11,7 +11,8 @@ from wrinklewave.figures.style import MILLI, Margins, colour_bar, legend_above, 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SHORTEST, LONGEST = 1e-3, 4e-3
+SHORTEST, LONGEST = 0.5, 2.0
+"""Wavelengths shown, over the critical one, or over that of the strongest spectrum where no film is named."""
 
 
 @figure(
@@ -20,12 +21,15 @@ SHORTEST, LONGEST = 1e-3, 4e-3
     caption="Spectra of the wrinkles in the window against time, over their maximum. Dashed red: critical"
     " wavelength; dashed green: wavelength of Eq. 1 at the strain of Fig. 5A's dotted line; "
     "white: Eq. 1 with the strain of Fig. 5A.",
+    possible=lambda inputs: inputs.surface_moves,
 )
 def wavelength_figure(inputs: FigureInputs) -> Figure:
     """Map of the spectra over time (to the right) and wavelength (upwards)."""
     spectra, expected = inputs.analysis.wrinkles.spectra, inputs.analysis.quasi_static
     time = MILLI * inputs.subject.time
-    shown = (spectra.wavelength >= SHORTEST) & (spectra.wavelength <= LONGEST)
+    strongest = spectra.peak[spectra.magnitude.max(axis=1).argmax()]
+    scale = strongest if expected is None else expected.critical_wavelength
+    shown = (spectra.wavelength >= SHORTEST * scale) & (spectra.wavelength <= LONGEST * scale)
     magnitude = spectra.magnitude[:, shown] / max(spectra.magnitude.max(), 1e-12)
     drawing, axes = new_figure(6.3, 3.0, margins=Margins(right=0.95, top=0.35))
     mesh = axes.pcolormesh(

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from wrinklewave.analysis.results import Analysis
 from wrinklewave.analysis.subject import Subject, subject_of
 from wrinklewave.laboratory_frame import Array
@@ -52,6 +54,11 @@ class FigureInputs:
     times: tuple[float, ...]
     snapshots: StrainSnapshots | None = None
     history: Mapping[str, Array] | None = None
+
+    @property
+    def surface_moves(self) -> bool:
+        """Whether there is any out-of-plane displacement to show."""
+        return bool(np.nanmax(np.abs(self.subject.u_y)) > 0.0)
 
 
 def figure_inputs(

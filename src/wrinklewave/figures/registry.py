@@ -68,5 +68,7 @@ def write_all(folder: str | Path, inputs: FigureInputs) -> dict[str, Path]:
             files[name] = folder / f"{name}.png"
             drawing = spec.draw(inputs)
             with matplotlib.rc_context(RC):
-                drawing.savefig(files[name])
+                drawing.savefig(
+                    files[name], pil_kwargs={"compress_level": 1}
+                )  # a third faster, a fifth larger
     return files
