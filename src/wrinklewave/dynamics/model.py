@@ -100,7 +100,7 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
 
 
 def layers(case: Case) -> tuple[GridMesh, list[Viscoelastic]]:
-    """Undeformed mesh of a case, and the material of each of its layers: the film is one if it is to be resolved.
+    """Undeformed mesh of a case and the material of each of its layers; a film to be resolved is one of them.
 
     Raises:
         InputError: if there are too few elements across the block for a film.

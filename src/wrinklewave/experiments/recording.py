@@ -9,6 +9,7 @@ import numpy as np
 
 from wrinklewave.dynamics.checkpoint import Record
 from wrinklewave.dynamics.fields import NOMINAL, RATE, STRAIN, depth_weights, to_nodes
+from wrinklewave.mesh.bilayer import SUBSTRATE
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,7 +27,7 @@ class SurfaceRecorder:
     """Motion of the surface nodes, and depth averages below them, at the surface times.
 
     Args:
-        depth: over which strain, rate and stress are averaged, below the surface [m].
+        depth: over which strain, rate and stress of the substrate are averaged, below its surface [m].
         frames: one tuple of :data:`SURFACE` per recorded time.
     """
 
@@ -36,8 +37,10 @@ class SurfaceRecorder:
     def record(self, simulation: Simulation, fields: NDArray[np.float64]) -> None:
         """Add the present state."""
         a = simulation.model.arrays
-        weights = depth_weights(a.Y[:, 0], float(a.Y[-1, 0]), self.depth)
-        averages = (to_nodes(weights @ fields[k]) for k in (STRAIN, RATE, NOMINAL))
+        substrate = np.flatnonzero(simulation.model.mesh.layer == SUBSTRATE)
+        y = a.Y[substrate[0] : substrate[-1] + 2, 0]
+        weights = depth_weights(y, float(y[-1]), min(self.depth, float(y[-1] - y[0])))
+        averages = (to_nodes(weights @ fields[k][substrate]) for k in (STRAIN, RATE, NOMINAL))
         self.frames.append((np.float64(simulation.time), a.X[-1] + a.u[-1], a.Y[-1] + a.w[-1], *averages))
 
     def to_record(self) -> Record:

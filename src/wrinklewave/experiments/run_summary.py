@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.materials.moduli import substrate_moduli
+from wrinklewave.theory.film import film_plane_strain_modulus, substrate_plane_strain_modulus
+from wrinklewave.theory.wrinkling import modulus_ratio_of_strain, modulus_ratio_of_wavelength
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -39,11 +41,28 @@ def energy_scalars(history: dict[str, NDArray[np.float64]]) -> dict[str, float]:
     }
 
 
+def film_scalars(case: Case) -> dict[str, float]:
+    """Film modulus over substrate modulus, as used and as each measured value implies: they may disagree."""
+    film, scalars = case.film, {}
+    if film is None:
+        return {}
+    if film.shear_modulus is not None or film.modulus_from is not None:
+        E_f = film_plane_strain_modulus(film, case.substrate)
+        scalars["film_modulus_ratio"] = E_f / substrate_plane_strain_modulus(case.substrate)
+    if film.critical_strain is not None:
+        scalars["film_modulus_ratio_of_critical_strain"] = modulus_ratio_of_strain(film.critical_strain)
+    if film.critical_wavelength is not None:
+        ratio = modulus_ratio_of_wavelength(film.critical_wavelength, film.thickness)
+        scalars["film_modulus_ratio_of_critical_wavelength"] = ratio
+    return scalars
+
+
 def material_scalars(case: Case) -> dict[str, float]:
-    """How compressible the substrate is: a number that nobody should have to guess."""
+    """How compressible the substrate is, and how stiff the film: numbers that nobody should have to guess."""
     substrate = substrate_moduli(case.substrate)
     return {
         "bulk_over_shear_long_term": substrate.K_inf / substrate.mu_inf,
         "bulk_over_shear_instantaneous": substrate.K_instantaneous / substrate.mu_instantaneous,
         "poisson_ratio_instantaneous": substrate.nu_instantaneous,
+        **film_scalars(case),
     }

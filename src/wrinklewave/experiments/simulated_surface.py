@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wrinklewave._version import __version__
+from wrinklewave.experiments.wrinkle_models import SurfaceNodes, seen_surface
 from wrinklewave.laboratory_frame import Array
 from wrinklewave.materials.moduli import plane_strain_modulus, substrate_moduli, youngs_modulus
 from wrinklewave.surface import surface_motion
-from wrinklewave.wrinkling.profile import smooth_surface, wrinkled_surface
-from wrinklewave.wrinkling.quasi_static import wrinkle_amplitude
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -35,31 +34,22 @@ def simulated_surface(case: Case, X: Array, record: Record) -> xr.Dataset:
     x = np.linspace(0.0, case.block.length, n + 1)
     x_boundary = x_p[:, 0]
     rest = case.block.height / 2
-    amplitude = model_amplitude(case, time, recorded["strain_xx"])
+    nodes = SurfaceNodes(time, X, x_p, y_p, recorded["strain_xx"])
+    y, y_smooth, amplitude = seen_surface(case, nodes, x, x_boundary)
     extra: dict[str, Any] = {}
-    if amplitude is None:
-        y = smooth_surface(X, x_p, y_p, x=x, x_boundary=x_boundary)
-    else:
-        assert case.film is not None  # a case with a wrinkling model has a film
-        y, y_smooth = wrinkled_surface(
-            X, x_p, y_p, amplitude, wavelength=case.film.critical_wavelength, x=x, x_boundary=x_boundary
-        )
+    if y_smooth is not None and amplitude is not None:
         extra = {"amplitude": amplitude, "y_smooth": y_smooth, "u_y_smooth": y_smooth - rest}
     return surface_motion(
-        time=time, x=x, X=X, y=y, u_y=y - rest, x_boundary=x_boundary, attrs=_attributes(case), **recorded, **extra
+        time=time,
+        x=x,
+        X=X,
+        y=y,
+        u_y=y - rest,
+        x_boundary=x_boundary,
+        attrs=_attributes(case),
+        **recorded,
+        **extra,
     )
-
-
-def model_amplitude(case: Case, time: Array, strain: Array) -> Array | None:
-    """Wrinkle amplitude [m] of the case's model, shape [n_times, n_points]; None if no model adds wrinkles."""
-    if case.wrinkles.model == "quasi-static":
-        assert case.film is not None
-        return wrinkle_amplitude(
-            strain,
-            critical_strain=case.film.critical_strain,
-            critical_wavelength=case.film.critical_wavelength,
-        )
-    return None
 
 
 def _attributes(case: Case) -> dict[str, Any]:

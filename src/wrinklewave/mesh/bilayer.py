@@ -35,7 +35,7 @@ def bilayer(
         length, bottom, top, thickness: sizes [m].
         columns: elements along x.
         substrate_rows, film_rows: elements through substrate and film.
-        grading: ratio of the last element's size to the first one's, along x, and upwards through the substrate.
+        grading: ratio of last to first element size, along x and upwards through the substrate.
     """
     x = graded(0.0, length, columns, grading[0])
     substrate = graded(bottom, top - thickness, substrate_rows, grading[1])
@@ -52,7 +52,8 @@ def warn_if_coarse(mesh: GridMesh, wavelength: float) -> None:
         if size > wavelength / ELEMENTS_PER_WAVELENGTH * (1 + 1e-9):
             warnings.warn(
                 f"elements {name} are {size * 1e3:.3g} mm, {wavelength / size:.1f} per wrinkle of "
-                f"{wavelength * 1e3:.3g} mm: expected at least {ELEMENTS_PER_WAVELENGTH} (mesh.elements, mesh.grading)",
+                f"{wavelength * 1e3:.3g} mm: "
+                f"expected at least {ELEMENTS_PER_WAVELENGTH} (mesh.elements, mesh.grading)",
                 stacklevel=2,
             )
 

@@ -1,7 +1,7 @@
 """The shape of a sample's surface before the test, and the mesh that follows it.
 
-An imperfection is a height over the undeformed, flat surface. The stress-free film follows it at constant thickness,
-as a film with wrinkles left by earlier tests does, and the substrate below it less and less with depth.
+An imperfection is a height over the undeformed, flat surface. The stress-free film follows it at constant
+thickness, as one with wrinkles left by earlier tests does, the substrate less and less with depth.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 RANDOM_COMPONENTS = 32
 """Sinusoids of a random imperfection, at equal distances in wavenumber."""
 BUMP_REACH = 8.0
-"""Standard deviations of a bump over which it dies out with depth: the wavelength of a sine of about its curvature."""
+"""Standard deviations of a bump over which it dies out with depth."""
 
 
 def imperfection_height(imperfection: Imperfection, X: Array) -> Array:
@@ -49,7 +49,7 @@ def imperfection_height(imperfection: Imperfection, X: Array) -> Array:
 
 
 def _random_height(imperfection: RandomImperfection, X: Array) -> Array:
-    """Sum of n cosines of amplitude a, whose mean square is n a^2/2, that of one cosine of the given amplitude."""
+    """Sum of n cosines of amplitude a; its mean square n a^2/2 is that of the given amplitude."""
     shortest, longest = imperfection.wavelengths
     wavenumbers = 2 * np.pi * np.linspace(1 / longest, 1 / shortest, RANDOM_COMPONENTS)
     phases = np.random.default_rng(imperfection.seed).uniform(0, 2 * np.pi, RANDOM_COMPONENTS)
@@ -66,7 +66,7 @@ def _measured_height(imperfection: ProfileImperfection, X: Array) -> Array:
 
 
 def reach(imperfection: Imperfection, depth: float) -> float:
-    """Depth [m] at which the material below an imperfection is flat again: its longest wavelength, at most ``depth``."""
+    """Depth [m] at which the material is flat again: the longest wavelength, at most ``depth``."""
     if isinstance(imperfection, SinusoidalImperfection):
         return min(imperfection.wavelength, depth)
     if isinstance(imperfection, RandomImperfection):

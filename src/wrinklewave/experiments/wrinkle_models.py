@@ -1,0 +1,153 @@
+"""The wrinkling models of a case behind one interface: from moving surface nodes to the surface that is seen.
+
+"none" adds nothing; "quasi-static" is Eq. 1 on the depth-averaged strain; "rate-dependent" takes the strain of the
+surface, which is what strains the film; "resolved" has its wrinkles in the motion of the nodes already.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from wrinklewave.config.imperfections import RandomImperfection, SinusoidalImperfection
+from wrinklewave.experiments.resolved_surface import resolved_wrinkles, smooth_displacement
+from wrinklewave.laboratory_frame import Array
+from wrinklewave.materials.moduli import substrate_moduli
+from wrinklewave.mesh.imperfection import imperfection_height
+from wrinklewave.theory.film import critical_values, film_material
+from wrinklewave.wrinkling import quasi_static
+from wrinklewave.wrinkling.profile import smooth_surface, wrinkled_surface
+
+if TYPE_CHECKING:
+    from wrinklewave.config import Case
+
+RANDOM_WAVELENGTHS = 9
+"""Of a random imperfection in the rate-dependent model, evenly spaced in wavenumber over its band."""
+
+
+class SurfaceNodes(NamedTuple):
+    """Surface nodes of a simulation; shapes [n_times], [n_points] and [n_times, n_points].
+
+    Args:
+        time: [s].
+        X: undeformed positions along the film [m], increasing.
+        x, y: positions [m].
+        strain: of the substrate below, averaged over its depth, compression > 0.
+    """
+
+    time: Array
+    X: Array
+    x: Array
+    y: Array
+    strain: Array
+
+
+class Seen(NamedTuple):
+    """Heights on the laboratory grid [m], shape [n_times, n_x], and amplitudes of the nodes [m].
+
+    ``smooth`` and ``amplitude`` are None if there are no wrinkles.
+    """
+
+    height: Array
+    smooth: Array | None
+    amplitude: Array | None
+
+
+def seen_surface(case: Case, nodes: SurfaceNodes, x: Array, x_boundary: Array) -> Seen:
+    """What a camera sees of the surface, under the case's wrinkling model.
+
+    Args:
+        case: that was simulated.
+        nodes: motion of its surface.
+        x: laboratory grid [m], shape [n_x].
+        x_boundary: struck end [m], shape [n_times].
+    """
+    seen = {"x": x, "x_boundary": x_boundary}
+    model = case.wrinkles.model
+    if model == "none":
+        return Seen(smooth_surface(nodes.X, nodes.x, nodes.y, **seen), None, None)
+    if model == "resolved":
+        cutoff = case.analysis.filter_wavelength
+        wrinkles = resolved_wrinkles(nodes.X, nodes.x, nodes.y, filter_wavelength=cutoff)
+        height = smooth_surface(nodes.X, nodes.x, nodes.y, **seen)
+        return Seen(height, smooth_surface(nodes.X, wrinkles.x, wrinkles.y, **seen), wrinkles.amplitude)
+    amplitude = _quasi_static(case, nodes) if model == "quasi-static" else _rate_dependent(case, nodes)
+    wavelength = model_wavelength(case)
+    heights = wrinkled_surface(nodes.X, nodes.x, nodes.y, amplitude, wavelength=wavelength, **seen)
+    return Seen(heights.wrinkled, heights.smooth, amplitude)
+
+
+def model_wavelength(case: Case) -> float:
+    """Undeformed wavelength [m] of a model's wrinkles: of a sinusoidal imperfection, else the critical one."""
+    assert case.film is not None  # a case with a wrinkling model has a film
+    imperfection = case.film.imperfection
+    if case.wrinkles.model == "rate-dependent" and isinstance(imperfection, SinusoidalImperfection):
+        return imperfection.wavelength
+    return critical_values(case.film, case.substrate)[1]
+
+
+def surface_strain(X: Array, x: Array, y: Array, *, filter_wavelength: float) -> Array:
+    """Nominal compressive strain along the surface, smoothed as the film's wrinkles smooth it.
+
+    Args:
+        X: undeformed positions of the surface nodes [m], shape [n_points].
+        x, y: their positions [m], shape [n_times, n_points].
+        filter_wavelength: of the low-pass filter [m].
+    """
+    u, w = (smooth_displacement(X, p, filter_wavelength=filter_wavelength) for p in (x - X, y))
+    return 1.0 - np.hypot(1.0 + np.gradient(u, X, axis=1), np.gradient(w, X, axis=1))
+
+
+def _quasi_static(case: Case, nodes: SurfaceNodes) -> Array:
+    assert case.film is not None
+    strain, wavelength = critical_values(case.film, case.substrate)
+    return quasi_static.wrinkle_amplitude(
+        nodes.strain, critical_strain=strain, critical_wavelength=wavelength
+    )
+
+
+def _rate_dependent(case: Case, nodes: SurfaceNodes) -> Array:
+    from wrinklewave.wrinkling.rate_dependent import FilmLayer, competing_wrinkles, wrinkle_amplitude
+
+    film, substrate = case.film, substrate_moduli(case.substrate)
+    assert film is not None  # checked with the case, as is the imperfection
+    assert film.imperfection is not None
+    layer = FilmLayer(film.thickness, film_material(film, case.substrate))
+    cutoff = case.analysis.filter_wavelength
+    strain = surface_strain(nodes.X, nodes.x, nodes.y, filter_wavelength=cutoff)
+    if isinstance(film.imperfection, RandomImperfection):
+        shortest, longest = film.imperfection.wavelengths
+        return competing_wrinkles(
+            nodes.time,
+            strain,
+            film=layer,
+            substrate=substrate,
+            wavelengths=1.0 / np.linspace(1 / longest, 1 / shortest, RANDOM_WAVELENGTHS),
+            imperfection=film.imperfection.amplitude / np.sqrt(RANDOM_WAVELENGTHS),
+        ).amplitude
+    return wrinkle_amplitude(
+        nodes.time,
+        strain,
+        film=layer,
+        substrate=substrate,
+        wavelength=model_wavelength(case),
+        imperfection=_local_imperfection(case, nodes.X),
+    )
+
+
+def _local_imperfection(case: Case, X: Array) -> Array:
+    """Amplitude [m] at each point of the imperfection's part of the model's wavelength.
+
+    Twice its mean with exp(-i k X), weighted by a Hann window of two wavelengths.
+    """
+    assert case.film is not None
+    assert case.film.imperfection is not None
+    imperfection, wavelength = case.film.imperfection, model_wavelength(case)
+    if isinstance(imperfection, SinusoidalImperfection):
+        return np.full(X.shape, imperfection.amplitude)
+    offset = np.linspace(-wavelength, wavelength, 129)
+    weight = 0.5 * (1.0 + np.cos(np.pi * offset / wavelength))
+    weight = weight / weight.sum() * np.exp(-2j * np.pi * offset / wavelength)
+    height = imperfection_height(imperfection, X[:, None] + offset)
+    return 2.0 * np.abs((height - height.mean(axis=1, keepdims=True)) @ weight)
