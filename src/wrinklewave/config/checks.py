@@ -100,6 +100,10 @@ def _drive(case: Case) -> Iterator[InputError]:
     if isinstance(drive, StrikerDrive | EndMotionDrive) and drive.stop_distance >= length:
         problem = f"{_mm(drive.stop_distance)} crushes the whole block"
         yield _error("drive.stop_distance", problem, _inside(case), "make it smaller")
+    if isinstance(drive, StrikerDrive) and drive.rise_time * drive.velocity > drive.stop_distance:
+        problem = f"{_ms(drive.rise_time)} to gain speed and as long to lose it need a longer travel"
+        expected = f"at most stop_distance / velocity = {_ms(drive.stop_distance / drive.velocity)}"
+        yield _error("drive.rise_time", problem, expected, "lower it, or raise drive.stop_distance")
     if isinstance(drive, EndMotionDrive) and not drive.stop_distance <= drive.overshoot < length:
         expected = f"stop_distance = {_mm(drive.stop_distance)} at least, and {_inside(case)}"
         cure = "give the final travel of the end, not the part beyond stop_distance"

@@ -25,39 +25,39 @@ def cubic_segments(t: NDArray[np.float64], U: Function, V: Function) -> NDArray[
     return np.column_stack([t[:-1], t[1:], U(t[:-1]), U(t[1:]), V(t[:-1]), V(t[1:])])
 
 
-def velocity_step(drive: VelocityStepDrive | StrikerDrive) -> NDArray[np.float64]:
-    """Speed rises along half a cosine within the rise time, then stays: V (1 - cos(pi t/T))/2."""
+def velocity_step(drive: VelocityStepDrive) -> NDArray[np.float64]:
+    """Speed rises along half a cosine within the rise time, then stays."""
     V, T = drive.velocity, drive.rise_time
     steady = np.array([[T, T + 1.0, V * T / 2, V * T / 2 + V, V, V]])
+    return np.vstack([_speed_up(V, T), steady])
+
+
+def striker(drive: StrikerDrive) -> NDArray[np.float64]:
+    """The plate gains its speed within the rise time, and loses it within the same time before the stoppers.
+
+    Both along half a cosine; its travel ends at the stop distance.
+    """
+    V, T, distance = drive.velocity, drive.rise_time, drive.stop_distance
+    up = _speed_up(V, T)
+    t_brake = distance / V
+    steady = np.array([[T, t_brake, V * T / 2, distance - V * T / 2, V, V]])
+    t_stop = t_brake + T
+    down = up[::-1].copy()
+    down[:, 0], down[:, 1] = t_stop - up[::-1, 1], t_stop - up[::-1, 0]
+    down[:, 2], down[:, 3] = distance - up[::-1, 3], distance - up[::-1, 2]
+    down[:, 4], down[:, 5] = up[::-1, 5], up[::-1, 4]
+    return np.vstack([up, steady, down, [t_stop, t_stop + 1.0, distance, distance, 0.0, 0.0]])
+
+
+def _speed_up(V: float, T: float) -> NDArray[np.float64]:
+    """From rest to speed V [m/s] in T [s]: V (1 - cos(pi t/T))/2."""
     if T == 0:
-        return steady
-    ramp = cubic_segments(
+        return np.empty((0, 6))
+    return cubic_segments(
         np.linspace(0, T, RAMP_SEGMENTS + 1),
         lambda t: V / 2 * (t - T / np.pi * np.sin(np.pi * t / T)),
         lambda t: V / 2 * (1 - np.cos(np.pi * t / T)),
     )
-    return np.vstack([ramp, steady])
-
-
-def striker(drive: StrikerDrive) -> NDArray[np.float64]:
-    """The plate of :func:`velocity_step`, halted at once by the stoppers."""
-    return halted(velocity_step(drive), drive.stop_distance)
-
-
-def halted(motion: NDArray[np.float64], distance: float) -> NDArray[np.float64]:
-    """The same motion until it has gone ``distance`` [m], then rest."""
-    from scipy.optimize import brentq
-
-    from wrinklewave.dynamics.boundary import position
-
-    t_stop = brentq(lambda t: position(motion, t) - distance, 0.0, motion[-1, 1], xtol=1e-15)
-    before = motion[motion[:, 0] < t_stop].copy()
-    last = before[-1]
-    h = 1e-6 * (last[1] - last[0])
-    speed = (position(motion, t_stop) - position(motion, t_stop - h)) / h
-    before[-1] = last[0], t_stop, last[2], distance, last[4], speed
-    rest = np.array([[t_stop, t_stop + 1.0, distance, distance, 0.0, 0.0]])
-    return np.vstack([before, rest])
 
 
 def end_motion(drive: EndMotionDrive) -> NDArray[np.float64]:
