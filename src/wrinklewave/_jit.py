@@ -67,7 +67,9 @@ _use_full_vector_width()
 _use_work_queue()
 
 _COMMON: dict[str, Any] = {"error_model": "numpy", "cache": True, "nogil": True}
-_NO_COUNTING: dict[str, Any] = _COMMON | {"_nrt": False}  # kernels allocate nothing; counting references costs a third
+_NO_COUNTING: dict[str, Any] = _COMMON | {
+    "_nrt": False
+}  # kernels allocate nothing; counting references costs a third
 _FAST: dict[str, Any] = _NO_COUNTING | {"fastmath": True}
 
 
@@ -92,3 +94,6 @@ serial = _compiler(**_NO_COUNTING)
 
 parallel = _compiler(**_COMMON, parallel=True)
 """For functions that share rows of elements out to threads."""
+
+allocating = _compiler(**_COMMON)
+"""For loops that make arrays of their own, with strict floating point."""

@@ -8,9 +8,9 @@ steps) keeps stray edges from taking over single columns, and still lets the edg
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Floats, Pixels
 
 BIN_COLUMNS = 4
@@ -42,7 +42,7 @@ def step_contrast(image: Pixels) -> tuple[float, float]:
     return float(np.median(response.max(axis=1))), float(np.median((-response).max(axis=1)))
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _binned(image: Pixels) -> Pixels:
     """Mean grey value of bins, shape [n_column_bins, n_row_bins]; leftover rows and columns are not used."""
     n_rows, n_columns = image.shape[0] // BIN_ROWS, image.shape[1] // BIN_COLUMNS
@@ -57,7 +57,7 @@ def _binned(image: Pixels) -> Pixels:
     return binned
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _step_response(binned: Pixels) -> Pixels:
     """Mean of the next ``_REACH`` bins minus mean of the last, between row bins r - 1 and r."""
     n_columns, n_rows = binned.shape
@@ -72,7 +72,7 @@ def _step_response(binned: Pixels) -> Pixels:
     return response
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _best_path(score: Pixels) -> NDArray[np.int64]:
     """Row bins of the path of largest total score less the cost of its steps, shape [n_column_bins].
 
@@ -111,7 +111,7 @@ def _best_path(score: Pixels) -> NDArray[np.int64]:
     return path
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _unbinned(path: NDArray[np.int64], score: Pixels, n_columns: int) -> Floats:
     """Rows per column: the parabola through three scores at each bin, and straight lines between bins."""
     centre = np.empty(path.size)

@@ -11,11 +11,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
-from wrinklewave.imaging.edges.levels import Levels
+from wrinklewave.imaging.edges.levels import Levels, with_neighbours
 from wrinklewave.imaging.edges.profile import normal_distribution
 
 _REACH = 3.0  # blurs on either side that carry information on the position
@@ -65,10 +65,11 @@ def find_columns(
         image, start, levels.origin, blur, levels.value, levels.gradient, levels.noise, usable, tolerance
     )
     expected = levels.mean_noise * (1.0 + _MISFIT_SIGMAS / np.sqrt(2.0 * np.maximum(count, 1)))
-    return Columns(rows, sigma).only(residual <= expected + _MISFIT * levels.contrast)
+    misshapen = (count > 0) & (residual > expected + _MISFIT * levels.contrast)
+    return Columns(rows, sigma).only(~with_neighbours(misshapen, blur))
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _locate(
     image: Pixels,
     start: Floats,
@@ -95,12 +96,14 @@ def _locate(
             if start[c] - 1.5 * blur[c] < 0 or start[c] + 1.5 * blur[c] > n_rows - 1:
                 continue
             first, last = max(first, 0), min(last, n_rows - 1)
+        count[c] = last - first + 1
         row, moved, proposed = start[c], 0.0, 0.0
-        found = False
-        for _ in range(_MAX_STEPS):
+        for iteration in range(_MAX_STEPS):
             slope, information, squares = _step(
                 image, c, first, last, row, origin[c], blur[c], value, gradient, noise
             )
+            if iteration == 0:
+                residual[c] = np.sqrt(squares / count[c])  # for columns where nothing is found
             if information <= 0.0:
                 break
             step = slope / information
@@ -112,17 +115,14 @@ def _locate(
             if abs(row - start[c]) > reach:
                 break
             if abs(moved) < tolerance:
-                found = True
+                rows[c] = row
+                sigma[c] = 1.0 / np.sqrt(information)
+                residual[c] = np.sqrt(squares / count[c])
                 break
-        if found:
-            rows[c] = row
-            sigma[c] = 1.0 / np.sqrt(information)
-            count[c] = last - first + 1
-            residual[c] = np.sqrt(squares / count[c])
     return rows, sigma, residual, count
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _step(
     image: Pixels,
     c: int,

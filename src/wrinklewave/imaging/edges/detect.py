@@ -21,7 +21,7 @@ _FEWEST = 4 * ORDER  # columns with an edge
 _ROUGHLY, _FINELY = 0.05, 1e-3  # px: where the columns' iterations stop, first and last time
 _ASTRAY = 6.0  # standard uncertainties between a column and the surface through its neighbours ...
 _ASTRAY_ROWS = 0.3  # ... and pixels beyond
-_BRIDGE = 2.0  # a surface point is valid while its uncertainty is below so many of a single column's
+_BRIDGE = 1.0  # a surface point is valid while its uncertainty is below so many of a single column's
 
 
 @dataclass(frozen=True)

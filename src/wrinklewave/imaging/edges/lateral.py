@@ -10,9 +10,9 @@ at the slope m: a linear operator B of local blurs v. See docs/measurement_theor
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Floats
 from wrinklewave.imaging.edges.profile import normal_distribution
 
@@ -35,7 +35,7 @@ def lateral_kernels(blur: float) -> NDArray[np.float64]:
     return kernels / kernels.sum(axis=1, keepdims=True)
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def local_kernels(slope: Floats, kernels: Floats) -> Floats:
     """Rows of B, shape [n, 2 reach + 1], for the slopes at n columns."""
     n, width = slope.size, kernels.shape[1]
@@ -49,7 +49,7 @@ def local_kernels(slope: Floats, kernels: Floats) -> Floats:
     return rows
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def seen_linearly(surface: Floats, local: Floats) -> Floats:
     """B y at the n columns of ``local``; the surface goes on ``reach`` columns further on both sides."""
     n, width = local.shape
@@ -60,7 +60,7 @@ def seen_linearly(surface: Floats, local: Floats) -> Floats:
     return seen
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def seen_exactly(surface: Floats, linear: Floats, slope: Floats, blur: float) -> Floats:
     """Where columns see the surface: Newton's steps from the linear answer, steep as a normal mixture."""
     n = linear.size

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 
 _BAND = 20  # pixels along the column
@@ -25,6 +25,7 @@ _GRADIENT_HALF_WINDOW = 96  # the same for the gradient
 _GRADIENT_PRIOR = 0.01  # its standard deviation beforehand, in contrasts per pixel
 _OUTLIER = 6.0  # standard deviations of a band's mean from the line, beyond a tenth of the contrast
 _LEAST_NOISE = 0.29  # grey values: rounding to integers
+_SPOILT = 2.2  # blurs between a column that something stands before and the nearest that may be trusted
 _LOWEST_CONTRAST = 0.4  # of the median: columns with less have no edge
 
 
@@ -85,7 +86,8 @@ def find_levels(image: Pixels, rows: Floats, blur: Floats, first: int, stop: int
     usable &= step * typical > _LOWEST_CONTRAST * typical**2
     noise = np.array([_pooled_noise(band, usable) for band in bands])
     sides = [
-        _side(band, usable, abs(typical), float(sigma)) for band, sigma in zip(bands, noise, strict=True)
+        _side(band, usable, abs(typical), float(sigma), blur)
+        for band, sigma in zip(bands, noise, strict=True)
     ]
     return Levels(
         origin=rows,
@@ -97,16 +99,24 @@ def find_levels(image: Pixels, rows: Floats, blur: Floats, first: int, stop: int
     )
 
 
-def _side(band: _Band, usable: Flags, contrast: float, noise: float) -> tuple[Floats, Floats]:
+def with_neighbours(marked: Flags, blur: Floats) -> Flags:
+    """Marked columns and those that the blur mixes with them, shape [n_columns]."""
+    width = int(np.ceil(_SPOILT * float(np.min(blur))))
+    count = np.cumsum(np.concatenate([np.zeros(width + 1), marked, np.zeros(width)]))
+    return count[2 * width + 1 :] > count[: -2 * width - 1]
+
+
+def _side(band: _Band, usable: Flags, contrast: float, noise: float, blur: Floats) -> tuple[Floats, Floats]:
     """Value and gradient on one side; again without columns unlike their neighbours (a wire, a shadow)."""
     ridge = (noise / max(_GRADIENT_PRIOR * contrast, 1e-9)) ** 2
     gradient = _gradient(band, usable, ridge)
     value = _value(band, usable, gradient)
     n = np.maximum(band.n, 1.0)
     limit = _OUTLIER * noise / np.sqrt(n) + 0.1 * contrast
-    alike = usable & (np.abs(band.mean - value - gradient * band.d / n) <= limit)
-    if (alike == usable).all():
+    unlike = usable & ~(np.abs(band.mean - value - gradient * band.d / n) <= limit)
+    if not unlike.any():
         return value, gradient
+    alike = usable & ~with_neighbours(unlike, blur)
     gradient = _gradient(band, alike, ridge)
     return _value(band, alike, gradient), gradient
 
@@ -143,7 +153,7 @@ def _value(band: _Band, taken: Flags, gradient: Floats) -> Floats:
     return np.where(known, mean + line * (x - centre), np.nan)
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _windowed(values: Floats, half: int) -> Floats:
     """Sums along each row in a window of triangular weight (two running sums), shorter at the ends."""
     n_rows, n = values.shape
@@ -164,7 +174,7 @@ def _windowed(values: Floats, half: int) -> Floats:
     return sums
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _band_sums(
     image: Pixels, rows: Floats, blur: Floats, below: bool, begin: int, stop: int
 ) -> tuple[Floats, Floats, Floats, Floats, Floats, Floats]:

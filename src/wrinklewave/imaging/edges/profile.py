@@ -9,8 +9,9 @@ and density.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from wrinklewave._jit import allocating
 
 _REACH = 6.0  # Phi(-6) = 1e-9
 _PER_UNIT = 128  # linear interpolation at this spacing is good to 3e-6 of the step
@@ -27,7 +28,7 @@ def _tables() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 _PHI, _G = _tables()
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def normal_distribution(t: float) -> tuple[float, float]:
     """Phi(t) and its integral G(t), from the tables."""
     if t <= -_REACH:

@@ -12,8 +12,8 @@ q, nothing below 0.8 R. Where columns are known better than 0.1 px, q falls with
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
+from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Floats
 
 ORDER = 8  # p
@@ -28,7 +28,7 @@ def penalty(resolution: float, blur: float) -> float:
     return float(_LOSS * passed / (2 * np.sin(np.pi / resolution)) ** (2 * ORDER))
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def band_limited_surface(
     rows: Floats, sigma: Floats, level_sigma: float, slope: Floats, local: Floats, stiffness: float
 ) -> tuple[Floats, Floats]:
@@ -68,7 +68,7 @@ def band_limited_surface(
     return _solve(matrix, right), matrix
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def uncertainty(factor: Floats, level_sigma: float) -> Floats:
     """Standard uncertainty of a surface, from the diagonal of the inverse of its normal equations' matrix.
 
@@ -90,7 +90,7 @@ def uncertainty(factor: Floats, level_sigma: float) -> Floats:
     return level_sigma * np.sqrt(inverse[:, 0])
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _filled(rows: Floats) -> Floats:
     """Straight lines across gaps."""
     filled = rows.copy()
@@ -103,7 +103,7 @@ def _filled(rows: Floats) -> Floats:
     return filled
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _add_penalty(matrix: Floats, stiffness: float) -> None:
     """Add stiffness D'D, D the differences of order ORDER with binomial coefficients."""
     n = matrix.shape[0]
@@ -119,7 +119,7 @@ def _add_penalty(matrix: Floats, stiffness: float) -> None:
                 matrix[i + j, j - k] += product[j, k]
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _factorise(matrix: Floats) -> None:
     """Banded Cholesky in place: matrix[i, k] becomes L[i, i - k]."""
     n, width = matrix.shape
@@ -133,7 +133,7 @@ def _factorise(matrix: Floats) -> None:
             matrix[i, k] = np.sqrt(total) if k == 0 else total / matrix[j, 0]
 
 
-@njit(cache=True, nogil=True)
+@allocating
 def _solve(factor: Floats, right: Floats) -> Floats:
     n, width = factor.shape
     x = right.copy()
