@@ -92,6 +92,16 @@ def test_a_surface_without_film_or_strain_is_analysed_as_far_as_it_goes() -> Non
     assert result.summary["wavefront_speed_m_per_s"] == pytest.approx(57.0, rel=5e-3)
 
 
+def test_a_struck_end_that_was_never_seen_costs_its_own_results_only() -> None:
+    surface = TravellingPulse(end_time=2e-3, interval=20e-6).surface()
+    surface["x_boundary"] = surface["x_boundary"] * np.nan
+    surface["x_boundary"].attrs["units"] = "m"
+    summary = analyse(surface, SETTINGS).summary
+    assert summary["wavefront_speed_m_per_s"] == pytest.approx(57.0, rel=5e-3)
+    for name in ("contact_time_s", "boundary_bandwidth_hz", "boundary_displacement_max_m", "arc_strain_max"):
+        assert summary[name] is None, name
+
+
 def test_a_sample_at_rest_has_no_fronts_and_no_wrinkles() -> None:
     motion = TravellingPulse(velocity=0.0, travel=0.0, height=0.0, amplitude=0.0, end_time=1e-4)
     summary = analyse(motion.surface(), SETTINGS).summary

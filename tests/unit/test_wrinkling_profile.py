@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.special import ellipe
 
 from wrinklewave.laboratory_frame import surface_curve
 from wrinklewave.wrinkling.film import instantaneous_critical_strain, instantaneous_modulus
@@ -21,16 +20,6 @@ def test_amplitude_at_the_strain_of_the_stopped_striker() -> None:
     """A_0 = 0.1714 mm and lambda = 1.846 mm at eps = 0.12, computed by hand from Eq. 1."""
     assert wrinkle_amplitude(0.12, **FILM) == pytest.approx(1.7141480368e-4, rel=1e-10)
     assert wrinkle_wavelength(0.12, **FILM) == pytest.approx(1.846e-3, rel=1e-12)
-
-
-@pytest.mark.parametrize("strain", [0.06, 0.08, 0.10, 0.12, 0.16, 0.20])
-def test_amplitude_is_that_of_an_inextensible_film(strain: float) -> None:
-    """Inextensible sinusoid y = A cos(2 pi S / lambda_c) in the arc coordinate S: its projected length is
-    lambda_c (2/pi) E(q^2), q = 2 pi A / lambda_c, E the complete elliptic integral of the second kind; equal
-    to lambda_c (1 - (eps - eps_c)). Eq. 1 is its series, whose next term is of order (eps - eps_c)^3."""
-    excess = strain - FILM["critical_strain"]
-    q = 2 * np.pi * wrinkle_amplitude(strain, **FILM) / FILM["critical_wavelength"]
-    assert 2 / np.pi * ellipe(q**2) == pytest.approx(1 - excess, abs=excess**4)
 
 
 def test_no_wrinkles_below_the_critical_strain() -> None:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.analysis.boundary import boundary_spectrum, contact_time, separation_time, stop_time
+from wrinklewave.analysis.boundary import boundary_spectrum, contact_time, moved, separation_time, stop_time
 from wrinklewave.analysis.filters import low_pass
 from wrinklewave.analysis.fronts import SpeedFit, arrival_times, fit_speed
 from wrinklewave.analysis.results import Analysis, Boundary, Onset, Pulse, QuasiStatic, Strains, Wrinkles
@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     import xarray as xr
 
 NOTICEABLE_RATE = 3.0
+"""Strain rate [1/s] by which fronts of little strain are seen: a hundredth of what the paper's map shows."""
 SMALLEST_STRAIN = 0.002
+"""Strains below it give no momentary modulus: noise would be divided by noise."""
 
 
 def analyse(surface: xr.Dataset, settings: Settings) -> Analysis:
@@ -58,7 +60,7 @@ def analyse(surface: xr.Dataset, settings: Settings) -> Analysis:
 def analyse_boundary(subject: Subject) -> Boundary:
     """Motion of the struck end, its spectrum and its moments."""
     time, stop = subject.time, subject.stop_distance
-    displacement = subject.x_boundary - subject.x_boundary[np.isfinite(subject.x_boundary)][0]
+    displacement = moved(subject.x_boundary)
     return Boundary(
         displacement=displacement,
         spectrum=boundary_spectrum(time, displacement),

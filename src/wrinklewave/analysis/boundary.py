@@ -36,17 +36,27 @@ def boundary_spectrum(time: ArrayLike, displacement: ArrayLike) -> Spectrum:
     Args:
         time: shape [n_times] [s].
         displacement: shape [n_times] [m]; gaps (NaN) and uneven times are bridged linearly.
+
+    Returns:
+        The spectrum; zero, without bandwidth, if the end was never seen.
     """
     time, displacement = np.asarray(time, dtype=float), np.asarray(displacement, dtype=float)
     known = np.isfinite(displacement)
     even = np.linspace(time[0], time[-1], time.size)
-    motion = np.interp(even, time[known], displacement[known])
+    motion = np.interp(even, time[known], displacement[known]) if known.any() else np.zeros(time.size)
     n = ZERO_PADDING * time.size
     frequency = np.fft.rfftfreq(n, float(even[1] - even[0]))
     magnitude = np.abs(np.fft.rfft(motion, n=n))
     magnitude = magnitude / max(magnitude.max(), np.finfo(float).tiny)
     loud = np.flatnonzero(magnitude >= NEGLIGIBLE_MAGNITUDE)
     return Spectrum(frequency, magnitude, float(frequency[loud[-1]]) if loud.size else float("nan"))
+
+
+def moved(x_boundary: ArrayLike) -> Array:
+    """Displacement of the struck end from where it was first seen [m], shape [n_times]."""
+    x_boundary = np.asarray(x_boundary, dtype=float)
+    seen = np.isfinite(x_boundary)
+    return x_boundary - x_boundary[seen.argmax()]
 
 
 def contact_time(time: ArrayLike, x_boundary: ArrayLike) -> float:
@@ -71,5 +81,4 @@ def stop_time(time: ArrayLike, x_boundary: ArrayLike, *, stop_distance: float) -
 
 
 def _passes(time: ArrayLike, x_boundary: ArrayLike, distance: float) -> float:
-    x_boundary = np.asarray(x_boundary, dtype=float)
-    return float(arrival_times(time, (x_boundary - x_boundary[0])[:, None], distance)[0])
+    return float(arrival_times(time, moved(x_boundary)[:, None], distance)[0])

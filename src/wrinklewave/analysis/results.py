@@ -48,7 +48,9 @@ class Pulse:
 
 @dataclass(frozen=True)
 class Onset:
-    """Where and when wrinkles first reach the threshold.
+    """Where and when wrinkles first reach the threshold, at least one filter wavelength from the struck end.
+
+    Nearer to it the filter cannot tell wrinkles from the curvature of the end.
 
     Attributes:
         time: [s].

@@ -15,6 +15,7 @@ from wrinklewave.laboratory_frame import Array
 Scalars = Iterator[tuple[str, float]]
 
 STRUCK_MARGIN = 2e-3
+"""Largest strains and rates are taken beyond it [m]: the corner of the struck end does not converge."""
 AHEAD = 10e-3
 HIGH_RATE, MODERATE_RATE = 500.0, 300.0
 

@@ -58,7 +58,7 @@ class FigureInputs:
     @property
     def surface_moves(self) -> bool:
         """Whether there is any out-of-plane displacement to show."""
-        return bool(np.nanmax(np.abs(self.subject.u_y)) > 0.0)
+        return bool(np.fmax.reduce(np.abs(self.subject.u_y), axis=None) > 0.0)
 
 
 def figure_inputs(
