@@ -28,12 +28,6 @@ def arc_length_strain(x: ArrayLike, y_smooth: ArrayLike, x_boundary: ArrayLike, 
     )
 
 
-def mean_strain(x_boundary: ArrayLike, *, length: float) -> Array:
-    """Strain from the motion of the struck end alone: U_x / L_0, shape [n_times]."""
-    x_boundary = np.asarray(x_boundary, dtype=float)
-    return (x_boundary - x_boundary[0]) / length
-
-
 def strain_rate(time: ArrayLike, strain: ArrayLike) -> Array:
     """Rate of strain by central differences in time [1/s], shape [n_times, ...]."""
     return np.gradient(np.asarray(strain, dtype=float), np.asarray(time, dtype=float), axis=0)
