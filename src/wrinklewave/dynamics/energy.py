@@ -105,16 +105,16 @@ def _hourglass(X, Y, bx, by, u):
 
 
 @vector
-def _survey_row(j, dt, a, memory, terms, out):
-    """Contribution of each element of row ``j``, in ``out`` [N_COLUMNS, n_columns]: sums are taken afterwards, so that
+def _survey_run(j, run, dt, a, memory, terms, out):
+    """Contribution of each element of a run of row ``j``, in ``out`` [N_COLUMNS, n_columns]: sums are taken afterwards, so that
     this loop vectorises."""
     r = uintp(j)
-    layer = a.layer[j]
+    start, stop, layer = a.runs[run]
     factors, shares = a.factors[layer], a.terms[layer]
     mu, K, linear, quadratic, hourglass = a.moduli[layer]
     n, last = n_points(memory, terms), bulk_place(memory, terms)
     stride = len(memory) // len(terms)
-    for i in range(uintp(a.X.shape[1] - 1)):
+    for i in range(uintp(start), uintp(stop)):
         X, Y, u, w = corners(a.X, r, i), corners(a.Y, r, i), corners(a.u, r, i), corners(a.w, r, i)
         vx, vy = corners(a.vx, r, i), corners(a.vy, r, i)
         u0 = (u[0] - dt * vx[0], u[1] - dt * vx[1], u[2] - dt * vx[2], u[3] - dt * vx[3])
@@ -182,7 +182,8 @@ def survey(dt, a, memory, terms, work, out):
     for part in prange(n_parts):
         row = work[part]
         for j in range(a.shares[part], a.shares[part + 1]):
-            _survey_row(j, dt, a, memory, terms, row)
+            for k in range(a.first_run[j], a.first_run[j + 1]):
+                _survey_run(j, k, dt, a, memory, terms, row)
             for column in range(HOURGLASS_AMPLITUDE):
                 out[j, column] = _sum(row[column])
             out[j, HOURGLASS_AMPLITUDE] = row[HOURGLASS_AMPLITUDE].max()

@@ -18,13 +18,13 @@ STRAIN, RATE, NOMINAL, XX, YY, XY, VOLUME = range(7)
 
 
 @vector
-def _fields_row(j, a, memory, terms, out):
+def _fields_run(j, run, a, memory, terms, out):
     r = uintp(j)
-    layer = a.layer[j]
+    start, stop, layer = a.runs[run]
     factors = a.factors[layer]
     mu, K = a.moduli[layer, 0], a.moduli[layer, 1]
     n, last = n_points(memory, terms), bulk_place(memory, terms)
-    for i in range(uintp(a.X.shape[1] - 1)):
+    for i in range(uintp(start), uintp(stop)):
         X, Y, u, w = corners(a.X, r, i), corners(a.Y, r, i), corners(a.u, r, i), corners(a.w, r, i)
         vx = corners(a.vx, r, i)
         e = volume_change(X, Y, u, w)
@@ -61,7 +61,8 @@ def element_fields(a, memory, terms, out):
     n_parts = a.shares.size - 1
     for part in prange(n_parts):
         for j in range(a.shares[part], a.shares[part + 1]):
-            _fields_row(j, a, memory, terms, out)
+            for k in range(a.first_run[j], a.first_run[j + 1]):
+                _fields_run(j, k, a, memory, terms, out)
 
 
 def to_nodes(columns: np.ndarray) -> np.ndarray:

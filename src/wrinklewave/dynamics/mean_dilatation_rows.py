@@ -56,14 +56,14 @@ def _point(g, xi, eta, x, y, u, w, r, i, memory, terms, factors, mu):
 
 
 @vector
-def mean_dilatation_row(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of element row ``j``; ``memory`` is brought to the next step."""
+def mean_dilatation_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """Forces of elements ``start`` to ``stop`` of row ``j``; ``memory`` is brought to the next step."""
     mu, K, linear, quadratic = moduli[0], moduli[1], moduli[2], moduli[3]
     stride = len(memory) // len(terms)
     bulk_relaxes = stride == 17
     r = uintp(j)
     s = r + ONE
-    for i in range(uintp(X.shape[1] - 1)):
+    for i in range(uintp(start), uintp(stop)):
         k = i + ONE
         X1, X2, X3, X4 = X[r, i], X[r, k], X[s, k], X[s, i]
         Y1, Y2, Y3, Y4 = Y[r, i], Y[r, k], Y[s, k], Y[s, i]

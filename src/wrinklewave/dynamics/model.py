@@ -133,6 +133,7 @@ def layers(case: Case) -> tuple[GridMesh, list[Viscoelastic]]:
         columns=columns,
         substrate_rows=rows - film_rows,
         film_rows=film_rows,
+        end_gap=film.end_gap,
         grading=grading,
     )
     warn_if_coarse(mesh, critical_values(film, case.substrate)[1])
@@ -159,6 +160,7 @@ def assemble(
     components = (ONE_POINT_COMPONENTS if one_point else MEAN_DILATATION_COMPONENTS)[bulk_relaxes]
     n_terms = terms.shape[1]
     rows, columns = mesh.shape
+    runs, first_run = material_runs(mesh.layer)
     parts = min(threads, rows)
     nodes = mesh.X.shape
     arrays = Arrays(
@@ -169,7 +171,8 @@ def assemble(
         vx=np.zeros(nodes),
         vy=np.zeros(nodes),
         inverse_mass=1.0 / lumped_mass(mesh, density),
-        layer=mesh.layer,
+        runs=runs,
+        first_run=first_run,
         moduli=np.array(
             [_moduli(m, rho, bulk_viscosity, hourglass) for m, rho in zip(materials, density, strict=True)]
         ),
@@ -183,9 +186,19 @@ def assemble(
     return Model(mesh, materials, arrays, memory, (0.0,) * n_terms, boundary, density)
 
 
+def material_runs(layer: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Neighbours of one material in each row, as :class:`wrinklewave.dynamics.step.Arrays` has them."""
+    starts = np.ones(layer.shape, dtype=bool)
+    starts[:, 1:] = layer[:, 1:] != layer[:, :-1]
+    row, start = np.nonzero(starts)
+    stop = np.where(np.append(row[1:] == row[:-1], False), np.append(start[1:], 0), layer.shape[1])
+    first = np.searchsorted(row, np.arange(layer.shape[0] + 1))
+    return np.column_stack([start, stop, layer[row, start]]).astype(np.int64), first.astype(np.int64)
+
+
 def lumped_mass(mesh: GridMesh, density: NDArray[np.float64]) -> NDArray[np.float64]:
     """Nodal masses [kg/m]: a quarter of each adjacent element's."""
-    quarter = 0.25 * density[mesh.layer][:, None] * mesh.areas()
+    quarter = 0.25 * density[mesh.layer] * mesh.areas()
     mass = np.zeros(mesh.X.shape)
     for corner in (mass[:-1, :-1], mass[:-1, 1:], mass[1:, 1:], mass[1:, :-1]):
         corner += quarter

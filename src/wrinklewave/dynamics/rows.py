@@ -36,8 +36,8 @@ ONE = uintp(1)
 
 
 @vector
-def one_point_row(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of element row ``j`` of one-point quadrilaterals; ``memory`` is brought to the next step.
+def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """Forces of elements ``start`` to ``stop`` of row ``j`` of one-point quadrilaterals; ``memory`` is brought to the next step.
 
     ``moduli``: long-term shear and bulk modulus [Pa], linear and quadratic bulk viscosity, hourglass factor.
     """
@@ -46,7 +46,7 @@ def one_point_row(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
     bulk_relaxes = stride == 7
     r = uintp(j)
     s = r + ONE
-    for i in range(uintp(X.shape[1] - 1)):
+    for i in range(uintp(start), uintp(stop)):
         k = i + ONE
         x13, y13 = X[r, i] - X[s, k], Y[r, i] - Y[s, k]
         x24, y24 = X[r, k] - X[s, i], Y[r, k] - Y[s, i]

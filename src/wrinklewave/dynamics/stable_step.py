@@ -50,15 +50,15 @@ def element_step(X, Y, u, w, vx, vy, mu_i, K_i, linear, quadratic, rho):
 
 
 @vector
-def _stable_step_row(j, a, density, out):
+def _stable_step_run(j, run, a, density, out):
     r = uintp(j)
-    layer = a.layer[j]
+    start, stop, layer = a.runs[run]
     mu_i, K_i = a.moduli[layer, 0], a.moduli[layer, 1]
     for m in range(a.terms.shape[1]):
         mu_i += a.terms[layer, m, 0]
         K_i += a.terms[layer, m, 1]
     linear, quadratic, rho = a.moduli[layer, 2], a.moduli[layer, 3], density[layer]
-    for i in range(uintp(a.X.shape[1] - 1)):
+    for i in range(uintp(start), uintp(stop)):
         X, Y, u, w = corners(a.X, r, i), corners(a.Y, r, i), corners(a.u, r, i), corners(a.w, r, i)
         vx, vy = corners(a.vx, r, i), corners(a.vy, r, i)
         out[r, i] = element_step(X, Y, u, w, vx, vy, mu_i, K_i, linear, quadratic, rho)
@@ -70,4 +70,5 @@ def stable_steps(a, density, out):
     n_parts = a.shares.size - 1
     for part in prange(n_parts):
         for j in range(a.shares[part], a.shares[part + 1]):
-            _stable_step_row(j, a, density, out)
+            for k in range(a.first_run[j], a.first_run[j + 1]):
+                _stable_step_run(j, k, a, density, out)

@@ -36,7 +36,8 @@ class Arrays(NamedTuple):
     vx: np.ndarray
     vy: np.ndarray
     inverse_mass: np.ndarray
-    layer: np.ndarray  # material of each element row, [n_rows]
+    runs: np.ndarray  # neighbours in a row of one material: first column, the one after the last, layer, [n_runs, 3]
+    first_run: np.ndarray  # of each row, and the number of all, [n_rows + 1]
     moduli: np.ndarray  # [n_layers, 5], as one_point_row takes them
     terms: np.ndarray  # [n_layers, n_terms, 3]: shear share, bulk share [Pa], relaxation time [s]
     factors: np.ndarray  # [n_layers, n_terms, 5]
@@ -60,17 +61,17 @@ def update_factors(a, dt_last, dt):
             a.factors[n, m, 4] = a.terms[n, m, 1] * b
 
 
-def element_row(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of one row of whichever element this memory belongs to; chosen when the kernel is compiled."""
+def element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """Forces of part of a row of whichever element this memory belongs to; chosen when the kernel is compiled."""
     raise NotImplementedError("for use in compiled code")
 
 
 @overload(element_row)
-def _choose_element_row(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+def _choose_element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     row = one_point_row if memory.count // terms.count in ONE_POINT_COMPONENTS else mean_dilatation_row
 
-    def call(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-        row(j, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
+    def call(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+        row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
 
     return call
 
@@ -83,12 +84,14 @@ def _slot(j, first):
 
 @serial
 def _share(part, a, memory, terms, dt_velocity, dt):
-    first, stop = a.shares[part], a.shares[part + 1]
+    first, last = a.shares[part], a.shares[part + 1]
     forces = a.forces[part]
-    for j in range(first, stop):
+    for j in range(first, last):
         above = forces[_slot(j, first)]
-        n = a.layer[j]
-        element_row(j, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, a.factors[n], a.moduli[n], above)
+        for k in range(a.first_run[j], a.first_run[j + 1]):
+            start, stop, n = a.runs[k]
+            factors, moduli = a.factors[n], a.moduli[n]
+            element_row(j, start, stop, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, above)
         if j > first:
             below = forces[_slot(j - 1, first)]
             node_row(j, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)

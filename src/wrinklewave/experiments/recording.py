@@ -37,7 +37,7 @@ class SurfaceRecorder:
     def record(self, simulation: Simulation, fields: NDArray[np.float64]) -> None:
         """Add the present state."""
         a = simulation.model.arrays
-        substrate = np.flatnonzero(simulation.model.mesh.layer == SUBSTRATE)
+        substrate = np.flatnonzero(simulation.model.mesh.layer[:, 0] == SUBSTRATE)
         y = a.Y[substrate[0] : substrate[-1] + 2, 0]
         weights = depth_weights(y, float(y[-1]), min(self.depth, float(y[-1] - y[0])))
         averages = (to_nodes(weights @ fields[k][substrate]) for k in (STRAIN, RATE, NOMINAL))

@@ -27,6 +27,7 @@ def bilayer(
     columns: int,
     substrate_rows: int,
     film_rows: int,
+    end_gap: float = 0.0,
     grading: tuple[float, float] = (1.0, 1.0),
 ) -> GridMesh:
     """A rectangular block 0 <= x <= length, bottom <= y <= top [m], its uppermost ``thickness`` [m] a film.
@@ -35,13 +36,16 @@ def bilayer(
         length, bottom, top, thickness: sizes [m].
         columns: elements along x.
         substrate_rows, film_rows: elements through substrate and film.
+        end_gap: the film ends this far before x = length [m]; its place there is the substrate's.
         grading: ratio of last to first element size, along x and upwards through the substrate.
     """
     x = graded(0.0, length, columns, grading[0])
     substrate = graded(bottom, top - thickness, substrate_rows, grading[1])
     film = np.linspace(top - thickness, top, film_rows + 1)
     X, Y = np.meshgrid(x, np.concatenate([substrate, film[1:]]))
-    return GridMesh(X=X, Y=Y, layer=np.repeat([SUBSTRATE, FILM], [substrate_rows, film_rows]))
+    layer = np.full((substrate_rows + film_rows, columns), SUBSTRATE)
+    layer[substrate_rows:, 0.5 * (x[1:] + x[:-1]) < length - end_gap] = FILM
+    return GridMesh(X=X, Y=Y, layer=layer)
 
 
 def warn_if_coarse(mesh: GridMesh, wavelength: float) -> None:
@@ -60,4 +64,4 @@ def warn_if_coarse(mesh: GridMesh, wavelength: float) -> None:
 
 def _substrate_sizes(mesh: GridMesh) -> NDArray[np.float64]:
     """Heights of the substrate's element rows at the struck end [m], upwards."""
-    return np.diff(mesh.Y[:, 0])[mesh.layer == SUBSTRATE]
+    return np.diff(mesh.Y[:, 0])[mesh.layer[:, 0] == SUBSTRATE]

@@ -18,7 +18,7 @@ class GridMesh:
     Args:
         X: undeformed node positions along the film [m], shape [n_rows + 1, n_columns + 1].
         Y: undeformed node positions across it [m], same shape.
-        layer: index of each element row's material, shape [n_rows].
+        layer: index of each element's material, shape [n_rows, n_columns].
     """
 
     X: NDArray[np.float64]
@@ -63,4 +63,4 @@ def block(
     x = graded(0.0, length, elements[0], grading[0])
     y = graded(bottom, top, elements[1], grading[1])
     X, Y = np.meshgrid(x, y)
-    return GridMesh(X=X, Y=Y, layer=np.zeros(elements[1], dtype=np.int64))
+    return GridMesh(X=X, Y=Y, layer=np.zeros(elements[::-1], dtype=np.int64))
