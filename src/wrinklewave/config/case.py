@@ -31,7 +31,7 @@ class About(Section):
     """Who this case is."""
 
     name: Annotated[str, Field(min_length=1, description="short name, used in titles")]
-    description: str = ""
+    description: Annotated[str, Field(description="free text, shown in the report")] = ""
 
 
 class Block(Section):
@@ -50,7 +50,7 @@ class Block(Section):
 class Wrinkles(Section):
     """Which model makes the wrinkles, and over which depth it averages the strain."""
 
-    model: WrinkleModel
+    model: Annotated[WrinkleModel, Field(description='left out: "quasi-static" with a film, else "none"')]
     averaging_depth: Annotated[PositiveLength, Field(description="D, in the undeformed state")]
 
 
@@ -89,7 +89,9 @@ class Solver(Section):
     bulk_viscosity: Annotated[
         tuple[NotNegative, NotNegative], Field(description="linear and quadratic coefficient")
     ] = (0.06, 1.2)
-    precision: Literal["float64", "float32"] = "float64"
+    precision: Annotated[
+        Literal["float64", "float32"], Field(description="of the state and the arithmetic")
+    ] = "float64"
     checkpoint_interval: Annotated[PositiveTime, Field(description="wall-clock time between checkpoints")] = (
         60.0
     )
@@ -101,9 +103,9 @@ class Solver(Section):
 class Output(Section):
     """What is written, and how often (simulated time)."""
 
-    surface_interval: PositiveTime
-    field_interval: PositiveTime
-    history_interval: PositiveTime
+    surface_interval: Annotated[PositiveTime, Field(description="between frames of surface.nc")]
+    field_interval: Annotated[PositiveTime, Field(description="between frames of fields.vtkhdf")]
+    history_interval: Annotated[PositiveTime, Field(description="between rows of history.csv")]
     probes: Annotated[tuple[NotNegativeLength, ...], Field(description="undeformed x of surface points")] = ()
     pixel_size: Annotated[PositiveLength, Field(description="laboratory grid of the surface motion")]
 

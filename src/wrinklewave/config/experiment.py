@@ -158,8 +158,8 @@ AnyCalibration = Annotated[
 class Region(Section):
     """The part of the image to look at; outside are lamps, stoppers and captions."""
 
-    columns: PixelRange | None = None
-    rows: PixelRange | None = None
+    columns: Annotated[PixelRange | None, Field(description="first, and the one after the last")] = None
+    rows: Annotated[PixelRange | None, Field(description="first, and the one after the last")] = None
 
 
 class Contact(Section):

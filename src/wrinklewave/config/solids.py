@@ -39,7 +39,8 @@ class Solid(Section):
 
     law: Annotated[Literal["neo-hookean"], Field(description="hyperelastic law")] = "neo-hookean"
     bulk_response: Annotated[
-        BulkResponse, Field(description="which bulk modulus, and does it relax: the paper does not say")
+        BulkResponse,
+        Field(description="which bulk modulus, and does it relax; no default for a material that does"),
     ] = "elastic-long-term"
     prony: Annotated[
         tuple[PronyTerm, ...], Field(description="relaxing shares, none for an elastic solid")
