@@ -1,0 +1,165 @@
+"""A small simulation from case to files: contents, restart, threads, interruption."""
+
+import csv
+import json
+import os
+import signal
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from wrinklewave import surface
+from wrinklewave.config import load_case
+from wrinklewave.dynamics.fields import FIELDS
+from wrinklewave.errors import InputError, RunError
+from wrinklewave.experiments.simulate import Outcome, output_times, simulate
+
+QUICK = Path(__file__).parents[2] / "examples" / "quick.toml"
+SMALL = (
+    "mesh.elements=[24, 8]",
+    "solver.end_time=0.5 ms",
+    "output.field_interval=0.1 ms",
+    "analysis.times=[\"0.2 ms\", \"0.4 ms\"]",
+)
+
+
+@pytest.fixture(scope="module")
+def case():
+    return load_case(QUICK, SMALL)
+
+
+@pytest.fixture(scope="module")
+def run(case, tmp_path_factory):
+    return simulate(case, out=tmp_path_factory.mktemp("run") / "small")
+
+
+def results(folder: Path) -> dict[str, bytes]:
+    """Every array of a run's files, and its history."""
+    found = {"history": (folder / "history.csv").read_bytes()}
+    for name in ("surface.nc", "fields.vtkhdf"):
+        with h5py.File(folder / name) as file:
+
+            def keep(key, item, name=name):
+                if isinstance(item, h5py.Dataset):
+                    found[f"{name}/{key}"] = np.ascontiguousarray(item[()]).tobytes()
+
+            file.visititems(keep)
+    return found
+
+
+def test_output_times_end_at_the_end():
+    assert output_times(0.3, 1.0) == pytest.approx([0, 0.3, 0.6, 0.9, 1.0])
+    assert output_times(0.25, 1.0) == pytest.approx([0, 0.25, 0.5, 0.75, 1.0])
+
+
+def test_run_leaves_its_files(run):
+    names = {path.name for path in run.folder.iterdir()}
+    assert names == {"case.toml", "surface.nc", "fields.vtkhdf", "history.csv", "summary.json"}
+
+
+def test_surface_on_disk_is_that_of_the_run(run):
+    stored = surface.read(run.folder)
+    assert np.array_equal(stored.x_p, run.surface.x_p)
+    assert stored.time.values == pytest.approx(np.arange(51) * 1e-5)
+    assert stored.attrs["kind"] == "simulation"
+
+
+def test_resolved_case_on_disk_gives_an_equal_case(run):
+    assert load_case(run.folder / "case.toml") == run.case
+
+
+def test_summary_names_units_and_versions(run):
+    summary = json.loads((run.folder / "summary.json").read_text())
+    assert summary["outcome"] == "finished"
+    assert summary["steps"] == run.history["step"][-1]
+    assert 0 <= summary["energy_imbalance_max"] < 1e-2  # coarse in space and time
+    assert {"wavefront_speed_m_per_s", "element_updates_per_s", "hourglass_energy_share_max"} <= summary.keys()
+    assert summary["versions"]["wrinklewave"]
+
+
+def test_history_keeps_all_digits(run):
+    with (run.folder / "history.csv").open() as stream:
+        rows = list(csv.DictReader(stream))
+    assert [float(row["kinetic_J_per_m"]) for row in rows] == run.history["kinetic_J_per_m"].tolist()
+
+
+def test_paraview_reads_the_fields(run):
+    vtk = pytest.importorskip("vtk")
+    from vtk.util.numpy_support import vtk_to_numpy
+
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(run.folder / "fields.vtkhdf"))
+    reader.UpdateInformation()
+    assert reader.GetNumberOfSteps() == 6
+    reader.SetStep(5)
+    reader.Update()
+    grid = reader.GetOutput()
+    assert grid.GetNumberOfCells() == run.mesh.n_elements
+    assert {grid.GetCellData().GetArrayName(k) for k in range(grid.GetCellData().GetNumberOfArrays())} >= set(FIELDS)
+    displacement = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
+    top = displacement.reshape(*run.mesh.X.shape, 3)[-1, :, 0]
+    assert top == pytest.approx(run.surface.x_p.values[-1] - run.mesh.X[-1], abs=1e-8)
+    assert vtk_to_numpy(grid.GetPoints().GetData())[:, 0] == pytest.approx(run.mesh.X.ravel())
+
+
+def test_threads_change_no_bit(case, run, tmp_path):
+    if len(os.sched_getaffinity(0)) < 2:
+        pytest.skip("one core")
+    one = simulate(case, out=tmp_path / "one", threads=1)
+    two = simulate(case, out=tmp_path / "two", threads=2)
+    assert results(one.folder) == results(two.folder) == results(run.folder)
+
+
+@pytest.mark.parametrize("stop_at", [1, 17, 49])
+def test_interrupted_and_resumed_run_equals_an_undisturbed_one(case, run, tmp_path, stop_at):
+    def interrupt(state):
+        if state.time >= (stop_at - 0.5) * 1e-5:
+            signal.raise_signal(signal.SIGINT)
+
+    stopped = simulate(case, out=tmp_path, progress=interrupt)
+    assert stopped.outcome is Outcome.INTERRUPTED
+    assert json.loads((tmp_path / "summary.json").read_text())["outcome"] == "interrupted"
+    resumed = simulate(case, out=tmp_path, resume=True)
+    assert resumed.outcome is Outcome.FINISHED
+    assert results(tmp_path) == results(run.folder)
+
+
+def test_earlier_run_is_not_overwritten_unasked(case, run):
+    with pytest.raises(InputError, match="holds a run already"):
+        simulate(case, out=run.folder)
+
+
+def test_checkpoint_of_another_case_is_refused(case, tmp_path):
+    def interrupt(state):
+        signal.raise_signal(signal.SIGINT)
+
+    simulate(case, out=tmp_path, progress=interrupt)
+    with pytest.raises(InputError, match="another case"):
+        simulate(case, out=tmp_path, resume=True, overrides=["drive.velocity=9 m/s"])
+
+
+def test_run_without_a_folder_keeps_its_fields(case, run):
+    free = simulate(case)
+    assert len(free.fields) == 6
+    assert np.array_equal(free.surface.y, run.surface.y, equal_nan=True)
+
+
+def test_too_many_threads_is_an_error(case):
+    with pytest.raises(InputError, match="cores"):
+        simulate(case, threads=10_000)
+
+
+def test_collapsing_elements_stop_the_run_and_keep_what_was_computed(tmp_path):
+    crushing = load_case(
+        QUICK,
+        [*SMALL, "drive.stop_distance=45 mm", "drive.velocity=300 m/s", "solver.bulk_viscosity=[0.06, 0.0]"],
+    )
+    with pytest.raises(RunError) as caught:
+        simulate(crushing, out=tmp_path)
+    assert "row" in str(caught.value)
+    assert "to mend" in str(caught.value)
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert summary["outcome"] == "failed"
+    assert (tmp_path / "history.csv").stat().st_size > 200
