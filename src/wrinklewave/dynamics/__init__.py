@@ -1,0 +1,1 @@
+"""Explicit dynamics: elements, central differences, edges, energies, checkpoints."""
