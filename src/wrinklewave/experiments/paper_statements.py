@@ -219,7 +219,7 @@ STATEMENTS = (
         "about 1",
         "simulation",
         _key("wavelength_over_expected"),
-        Rule(1.0, 0.10),
+        Rule(1.0, 0.05),
         reasons={"": "Eq. 2 puts lambda_c on undeformed material: lambda_c (1 - eps), 4 to 5 % below Eq. 1"},
     ),
     Statement(

@@ -12,6 +12,7 @@ from wrinklewave.experiments.bulk_choices import with_bulk_response
 from wrinklewave.experiments.paper_table import Row, as_json, paper_table
 from wrinklewave.figures import FigureInputs, StrainSnapshots, figure_inputs, write_all
 from wrinklewave.report.page import ReportContext, write
+from wrinklewave.theory.report import is_papers
 from wrinklewave.theory.report import report as theory_report
 
 if TYPE_CHECKING:
@@ -21,14 +22,18 @@ IMBALANCE_LIMIT, HOURGLASS_LIMIT = 1e-3, 1e-2
 
 
 def compare_with_paper(run: Run, summaries: Mapping[str, Mapping[str, Any]]) -> list[Row]:
-    """The comparison table of a run and of the other bulk choices that were simulated with it."""
+    """The comparison table of a run and of the other bulk choices that were simulated with it; empty for other cases
+    than the paper's.
+    """
+    if not is_papers(run.case):
+        return []
     theory = {choice: theory_report(with_bulk_response(run.case, choice)) for choice in summaries if choice != "custom"}
     return paper_table(summaries, theory)
 
 
 def present(run: Run, comparison: Sequence[Row]) -> None:
     """Write ``figures/``, ``comparison.json`` and ``report.html`` into the folder of a finished run."""
-    assert run.folder is not None and run.surface is not None  # only finished runs with a folder are presented
+    assert run.folder is not None  # only runs with a folder are presented
     figures = write_all(run.folder / "figures", inputs_of(run))
     (run.folder / "comparison.json").write_text(json.dumps(as_json(comparison), indent=2) + "\n", encoding="utf-8")
     write(
@@ -50,7 +55,8 @@ def present(run: Run, comparison: Sequence[Row]) -> None:
 
 def inputs_of(run: Run) -> FigureInputs:
     """What the figures of a finished run are drawn from."""
-    assert run.surface is not None and run.analysis is not None  # a finished run has both
+    assert run.surface is not None  # a finished run has one
+    assert run.analysis is not None  # ... and this
     settings = run.case.analysis
     return figure_inputs(
         run.surface,
