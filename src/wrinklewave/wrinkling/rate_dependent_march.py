@@ -1,0 +1,260 @@
+"""The rate-dependent model's step: film and substrate meet, and all wrinkles together shorten the film.
+
+At every step the substrate is reduced to a stiffness and a force on the interface, of each wavenumber; the film
+answers with its response at the strain of its middle surface; and that strain is the axial strain less what all
+wrinkles take up: one scalar equation for every material point. Symbols as in ``docs/theory_wrinkling.md``; lengths in
+1/k, stresses in the substrate's long-term shear modulus, times in seconds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from wrinklewave.errors import RunError
+from wrinklewave.theory.biaxial import normal_stress, shape
+from wrinklewave.wrinkling.rate_dependent_film import FilmResponse, FilmTable
+from wrinklewave.wrinkling.rate_dependent_flat import FlatState, SteppedModuli, flat_at_rest, flat_step
+from wrinklewave.wrinkling.rate_dependent_substrate import (
+    Interface,
+    WaveState,
+    interface,
+    wave_step,
+    waves_at_rest,
+)
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 1e-8
+"""Of the film's strain."""
+MOST_ITERATIONS = 100
+
+
+@dataclass(frozen=True)
+class Bilayer:
+    """What does not change with time, shapes for M wavenumbers and P points.
+
+    Args:
+        substrate, film: moduli over steps of length ``step`` [s].
+        table: the film's response.
+        density: rho/(mu k^2) of the substrate [s^2], shape [M].
+        imperfection: k A_i, shape [M, P].
+        shortened: strain by which the imperfection shortens the film, shape [P].
+    """
+
+    substrate: SteppedModuli
+    film: SteppedModuli
+    table: FilmTable
+    density: Array
+    imperfection: Array
+    shortened: Array
+    step: float
+
+
+@dataclass(frozen=True)
+class WrinkleState:
+    """Film and substrate at some points.
+
+    Args:
+        strain: axial, shape [P].
+        film_strain: of the film's middle surface, shape [P].
+        taken_up: in the last step, of the axial strain by the wrinkles, shape [P].
+        slope: of the equation for it where it was last solved, shape [P].
+        flat, flat_film: flat state of substrate and film; that of an elastic film rests.
+        waves: on the substrate.
+        film_force: the film's force on its underside per Prony term before it relaxes, and what is left of it after,
+            shape [n_terms, 2, M, P] each.
+        top: k times the amplitude of the film's top, shape [M, P].
+    """
+
+    strain: Array
+    film_strain: Array
+    taken_up: Array
+    slope: Array
+    flat: FlatState
+    flat_film: FlatState
+    waves: WaveState
+    film_force: tuple[Array, Array]
+    top: Array
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Film and substrate at one trial strain of the film.
+
+    ``excess`` [P] is how far that strain lies above the axial strain less what the wrinkles take up; ``V0_film`` is
+    V0 counted from where the flat film puts the initial wrinkle.
+    """
+
+    film_strain: Array
+    excess: Array
+    film: FilmResponse
+    flat_film: FlatState
+    U0: Array
+    V0: Array
+    V0_film: Array
+
+
+def at_rest(bilayer: Bilayer) -> WrinkleState:
+    """Return the undeformed sample with its imperfection."""
+    M, P = bilayer.imperfection.shape
+    force = np.zeros((bilayer.film.keep.size, 2, M, P))
+    return WrinkleState(
+        strain=np.zeros(P),
+        film_strain=np.zeros(P),
+        taken_up=np.zeros(P),
+        slope=np.ones(P),
+        flat=flat_at_rest(bilayer.substrate, P),
+        flat_film=flat_at_rest(bilayer.film, P),
+        waves=waves_at_rest(bilayer.substrate, M, P),
+        film_force=(force, force),
+        top=bilayer.imperfection,
+    )
+
+
+def wrinkle_step(before: WrinkleState, strain: Array, bilayer: Bilayer) -> WrinkleState:
+    """Bring the points to the axial ``strain`` [P] within one step.
+
+    Raises:
+        RunError: if the film's strain leaves the table or cannot be found.
+    """
+    stretch = 1.0 - strain
+    flat = flat_step(before.flat, stretch, bilayer.substrate)
+    below = interface(
+        before.waves, stretch, flat, bilayer.substrate, bilayer.density, bilayer.table.mass, bilayer.step
+    )
+
+    def meet(film_strain: Array) -> Meeting:
+        return _meet(film_strain, before, strain, flat, below, bilayer)
+
+    unwrinkled = before.film_strain + strain - before.strain
+    met, slope = _solve(meet, unwrinkled - before.taken_up, before.slope, strain, bilayer)
+    film_force = before.film_force
+    if bilayer.film.relaxes:
+        film_force = _film_force(met, before.film_force, bilayer.film)
+    top_u, top_v, top_initial = met.film.top
+    return WrinkleState(
+        strain=strain,
+        film_strain=met.film_strain,
+        taken_up=unwrinkled - met.film_strain,
+        slope=slope,
+        flat=flat,
+        flat_film=met.flat_film,
+        waves=wave_step(before.waves, below, met.U0, met.V0, stretch, flat, bilayer.substrate, bilayer.step),
+        film_force=film_force,
+        top=top_u * met.U0
+        + top_v * met.V0_film
+        + (top_initial + met.film.transverse_stretch) * bilayer.imperfection,
+    )
+
+
+def shortening(slope: Array) -> Array:
+    """Share of its length that an inextensible film loses to a wrinkle of ``slope`` = k A: 1 - 2 E(slope^2)/pi.
+
+    E is the complete elliptic integral of that parameter and X the arc length; Eq. 1 of the paper is the inverse of
+    its series. Steeper than 1, where the film stands upright, it is taken as 1.
+    """
+    from scipy.special import ellipe
+
+    return 1.0 - 2.0 / np.pi * ellipe(np.minimum(slope**2, 1.0))
+
+
+def _meet(
+    film_strain: Array,
+    before: WrinkleState,
+    strain: Array,
+    flat: FlatState,
+    below: Interface,
+    bilayer: Bilayer,
+) -> Meeting:
+    film, initial = bilayer.table.at(film_strain), bilayer.imperfection
+    f_00, f_01, f_11 = film.F
+    force = below.force + film.f * initial
+    force[0] += (1.0 - strain) * flat.axial_stress * initial
+    flat_film = before.flat_film
+    if bilayer.film.relaxes:
+        flat_film = flat_step(before.flat_film, 1.0 - film_strain, bilayer.film)
+        (f_00, f_01, f_11), added = _film_memory(film_strain, film, flat_film, before, bilayer)
+        force += added
+    jump = (flat.transverse_stretch - film.transverse_stretch) * initial
+    force += np.array([f_01, f_11]) * jump
+    k_00, k_01, k_11 = f_00 + below.k_00, f_01 + below.k_01, f_11 + below.k_11
+    determinant = k_00 * k_11 - k_01**2
+    unstable = (k_00 <= 0.0) | (determinant <= 0.0)
+    determinant = np.where(unstable, 1.0, determinant)
+    U0 = (k_01 * force[1] - k_11 * force[0]) / determinant
+    V0 = (k_01 * force[0] - k_00 * force[1]) / determinant
+    shortened = shortening(V0 + flat.transverse_stretch * initial)
+    excess = film_strain - strain + np.where(unstable, 1.0, shortened).sum(axis=0) - bilayer.shortened
+    return Meeting(film_strain, excess, film, flat_film, U0, V0, V0 + jump)
+
+
+def _film_memory(
+    film_strain: Array, film: FilmResponse, flat_film: FlatState, before: WrinkleState, bilayer: Bilayer
+) -> tuple[Array, Array]:
+    """F of a film that relaxes, as it acts over the step, and the force that earlier steps left on its underside."""
+    moduli = bilayer.film
+    relaxed = _relaxed_stress(film_strain, film.transverse_stretch[0], moduli)
+    excess = flat_film.axial_stress - relaxed
+    strained, left = before.film_force
+    F = film.F + excess * film.F_of_stress + np.tensordot(moduli.add, film.F_of_terms, axes=1)
+    force = excess * film.f_of_stress * bilayer.imperfection
+    force += np.tensordot(moduli.keep, left, axes=1) - np.tensordot(moduli.add, strained, axes=1)
+    return F, force
+
+
+def _relaxed_stress(film_strain: Array, transverse_stretch: Array, moduli: SteppedModuli) -> Array:
+    """S_11 of a flat film that has relaxed, shape [P]."""
+    l1, l2 = 1.0 - film_strain, transverse_stretch
+    return normal_stress(l1, l2, moduli.mu * np.array(shape(l1, l2)), moduli.K * (l1 * l2 - 1.0))[0]
+
+
+def _film_force(met: Meeting, before: tuple[Array, Array], moduli: SteppedModuli) -> tuple[Array, Array]:
+    """Let the film's forces relax over a step and take up those of its new motion."""
+    f_00, f_01, f_11 = np.moveaxis(met.film.F_of_terms, 1, 0)
+    strained = np.stack([f_00 * met.U0 + f_01 * met.V0_film, f_01 * met.U0 + f_11 * met.V0_film], axis=1)
+    keep, add = (weights[:, np.newaxis, np.newaxis, np.newaxis] for weights in (moduli.keep, moduli.add))
+    return strained, keep * before[1] + add * (strained - before[0])
+
+
+def _solve(
+    meet: Callable[[Array], Meeting], guess: Array, slope: Array, strain: Array, bilayer: Bilayer
+) -> tuple[Meeting, Array]:
+    """Find the film strain of no excess, which rises with a slope of 1 or more: its only root.
+
+    Secant steps within a bracket, which is halved where they leave it. Unstable trials have an excess that says: less.
+    """
+    low = np.full_like(strain, bilayer.table.first_strain)
+    high = strain + bilayer.shortened
+    x, last = np.minimum(guess, high), None
+    for _ in range(MOST_ITERATIONS):
+        met = meet(x)
+        value = met.excess
+        if last is not None:
+            moved = x != last.film_strain
+            rise = np.divide(value - last.excess, x - last.film_strain, out=slope.copy(), where=moved)
+            slope = np.maximum(rise, 0.5)
+        done = (np.abs(value) < TOLERANCE) | (high - low < TOLERANCE)
+        if done.all():
+            _check_reach(x, strain, bilayer.table)
+            return met, slope
+        low, high = np.where(value > 0.0, low, x), np.where(value > 0.0, x, high)
+        following = x - value / slope
+        following = np.where((low < following) & (following < high), following, 0.5 * (low + high))
+        x, last = np.where(done, x, following), met
+    worst = int(np.argmax(np.abs(value)))
+    raise RunError(
+        f"the film's strain does not converge at point {worst}, where the strain is {strain[worst]:.4g}"
+    )
+
+
+def _check_reach(film_strain: Array, strain: Array, table: FilmTable) -> None:
+    if film_strain.min() < table.first_strain + TOLERANCE:
+        worst = int(np.argmin(film_strain))
+        raise RunError(
+            f"wrinkles at point {worst} stretch the film by more than {-table.first_strain:.3g} "
+            f"while the strain falls to {strain[worst]:.3g}: the strain falls faster than the model can follow"
+        )
