@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from wrinklewave import surface
 from wrinklewave.errors import InputError
+from wrinklewave.experiments.boundary_history import boundary_columns
 from wrinklewave.experiments.vtkhdf import write_vtkhdf
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ class RunFolder:
         """Everything but figures and report; then what only a restart needs goes."""
         assert run.surface is not None  # a finished run has one
         surface.write(run.surface, self.path / "surface.nc")
+        write_history(self.path / "boundary.csv", boundary_columns(run.surface))
         write_vtkhdf(self.path / "fields.vtkhdf", run.mesh, run.fields)
         self.write_unfinished(run)
         self.checkpoint.unlink(missing_ok=True)
