@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wrinklewave._version import __version__
+from wrinklewave.dynamics.checkpoint import Record
+from wrinklewave.experiments.recording import SURFACE
 from wrinklewave.experiments.wrinkle_models import SurfaceNodes, seen_surface
 from wrinklewave.laboratory_frame import Array
 from wrinklewave.materials.moduli import plane_strain_modulus, substrate_moduli, youngs_modulus
@@ -16,7 +18,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from wrinklewave.config import Case
-    from wrinklewave.dynamics.checkpoint import Record
 
 
 def simulated_surface(case: Case, X: Array, record: Record) -> xr.Dataset:
@@ -50,6 +51,17 @@ def simulated_surface(case: Case, X: Array, record: Record) -> xr.Dataset:
         **recorded,
         **extra,
     )
+
+
+def rewrinkled(surface: xr.Dataset, case: Case) -> xr.Dataset:
+    """The surface motion of the same substrate under the wrinkling model, film and imperfection of another case.
+
+    Args:
+        surface: of a simulation without a resolved film.
+        case: says which wrinkles; its block, substrate and drive must be those of the simulation.
+    """
+    record = Record({name: surface[name].values for name in SURFACE})
+    return simulated_surface(case, surface["X"].values, record)
 
 
 def _attributes(case: Case) -> dict[str, Any]:

@@ -6,11 +6,13 @@ surface, which is what strains the film; "resolved" has its wrinkles in the moti
 
 from __future__ import annotations
 
+import warnings
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from wrinklewave.config.imperfections import RandomImperfection, SinusoidalImperfection
+from wrinklewave.errors import RunError
 from wrinklewave.experiments.resolved_surface import resolved_wrinkles, smooth_displacement
 from wrinklewave.laboratory_frame import Array
 from wrinklewave.materials.moduli import substrate_moduli
@@ -108,18 +110,36 @@ def _quasi_static(case: Case, nodes: SurfaceNodes) -> Array:
 
 
 def _rate_dependent(case: Case, nodes: SurfaceNodes) -> Array:
+    """Amplitude of every node; nodes strained beyond the model's range take that of the nearest one within."""
+    from wrinklewave.wrinkling.rate_dependent import LARGEST_STRAIN
+
+    cutoff = case.analysis.filter_wavelength
+    strain = surface_strain(nodes.X, nodes.x, nodes.y, filter_wavelength=cutoff)
+    within = (np.abs(strain) <= LARGEST_STRAIN).all(axis=0)
+    if not within.any():
+        raise RunError("the surface is strained beyond the range of the rate-dependent model everywhere")
+    if not within.all():
+        warnings.warn(
+            f"{np.count_nonzero(~within)} of {within.size} surface nodes are strained by more than {LARGEST_STRAIN}, "
+            "beyond the rate-dependent model; they take the amplitude of the nearest node within its range",
+            stacklevel=2,
+        )
+    amplitude = _amplitude_of_strain(case, nodes.time, nodes.X[within], strain[:, within])
+    nearest = np.abs(nodes.X[:, None] - nodes.X[within]).argmin(axis=1)
+    return amplitude[:, nearest]
+
+
+def _amplitude_of_strain(case: Case, time: Array, X: Array, strain: Array) -> Array:
     from wrinklewave.wrinkling.rate_dependent import FilmLayer, competing_wrinkles, wrinkle_amplitude
 
     film, substrate = case.film, substrate_moduli(case.substrate)
     assert film is not None  # checked with the case, as is the imperfection
     assert film.imperfection is not None
     layer = FilmLayer(film.thickness, film_material(film, case.substrate))
-    cutoff = case.analysis.filter_wavelength
-    strain = surface_strain(nodes.X, nodes.x, nodes.y, filter_wavelength=cutoff)
     if isinstance(film.imperfection, RandomImperfection):
         shortest, longest = film.imperfection.wavelengths
         return competing_wrinkles(
-            nodes.time,
+            time,
             strain,
             film=layer,
             substrate=substrate,
@@ -127,12 +147,12 @@ def _rate_dependent(case: Case, nodes: SurfaceNodes) -> Array:
             imperfection=film.imperfection.amplitude / np.sqrt(RANDOM_WAVELENGTHS),
         ).amplitude
     return wrinkle_amplitude(
-        nodes.time,
+        time,
         strain,
         film=layer,
         substrate=substrate,
         wavelength=model_wavelength(case),
-        imperfection=_local_imperfection(case, nodes.X),
+        imperfection=_local_imperfection(case, X),
     )
 
 
