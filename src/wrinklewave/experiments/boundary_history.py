@@ -62,8 +62,7 @@ def _continued(x: Array, height: Array, end: float) -> float:
     near = np.flatnonzero(np.isfinite(height) & (x >= end) & (x <= end + CORNER_STRETCH))
     if near.size < FEWEST_HEIGHTS:
         return float("nan")
-    slope, intercept = np.polyfit(x[near] - end, height[near], 1)
-    return float(intercept)
+    return float(np.polyfit(x[near] - end, height[near], 1)[1])
 
 
 def _from_rest(time: Array, position: Array) -> Array:

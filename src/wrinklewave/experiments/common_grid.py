@@ -29,7 +29,8 @@ class CommonGrid:
 def contact_times(surfaces: Mapping[str, xr.Dataset]) -> tuple[float, ...]:
     """When the struck end of each has moved by 50 um, on its own clock [s]; NaN where it never does."""
     return tuple(
-        contact_time(surface["time"].values, moved(surface["x_boundary"].values)) for surface in surfaces.values()
+        contact_time(surface["time"].values, moved(surface["x_boundary"].values))
+        for surface in surfaces.values()
     )
 
 
@@ -120,4 +121,6 @@ def _overlap(axes: Mapping[str, Array], key: str, unit: str) -> Array:
 
 
 def _ranges(axes: Mapping[str, Array], unit: str) -> str:
-    return "; ".join(f"{name} {1e3 * axis[0]:.4g} to {1e3 * axis[-1]:.4g} {unit}" for name, axis in axes.items())
+    return "; ".join(
+        f"{name} {1e3 * axis[0]:.4g} to {1e3 * axis[-1]:.4g} {unit}" for name, axis in axes.items()
+    )

@@ -7,6 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wrinklewave.analysis.analyse import analyse
 from wrinklewave.analysis.subject import Subject, subject_of
@@ -29,7 +30,12 @@ if TYPE_CHECKING:
     from wrinklewave.config.case import Analysis as Settings
 
 FEWEST_IN_WINDOW = 16
-NO_RATIO = ("recorded_contact_time_s", "low_frequency_misfit_m", "low_frequency_misfit_share", "compared_share")
+NO_RATIO = (
+    "recorded_contact_time_s",
+    "low_frequency_misfit_m",
+    "low_frequency_misfit_share",
+    "compared_share",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +177,9 @@ def _motion(surface: xr.Dataset, settings: Settings) -> ComparedMotion:
     return ComparedMotion(subject_of(surface), analyse(surface, settings), surface.attrs["clock_shift"])
 
 
-def _agreement(motion: ComparedMotion, first: ComparedMotion, grid: CommonGrid, settings: Settings) -> Agreement:
+def _agreement(
+    motion: ComparedMotion, first: ComparedMotion, grid: CommonGrid, settings: Settings
+) -> Agreement:
     reference, other = (
         resample(m.analysis.pulse.displacement, m.subject.time, m.subject.x, grid) for m in (first, motion)
     )
@@ -179,25 +187,27 @@ def _agreement(motion: ComparedMotion, first: ComparedMotion, grid: CommonGrid, 
     known = np.isfinite(misfit)
     rms = float(np.sqrt(np.mean(misfit[known] ** 2))) if known.any() else float("nan")
     largest = np.fmax.reduce(np.abs(reference), axis=None)
-    amplitudes, wavelengths = (
-        [resample_rows(values, m.subject.time, grid.time) for m, values in zip((motion, first), pair, strict=True)]
-        for pair in (
-            [m.analysis.wrinkles.amplitude for m in (motion, first)],
-            [m.analysis.wrinkles.spectra.peak for m in (motion, first)],
+    amplitude, reference_amplitude, wavelength, reference_wavelength = (
+        resample_rows(values, m.subject.time, grid.time)
+        for m, values in (
+            (motion, motion.analysis.wrinkles.amplitude),
+            (first, first.analysis.wrinkles.amplitude),
+            (motion, motion.analysis.wrinkles.spectra.peak),
+            (first, first.analysis.wrinkles.spectra.peak),
         )
     )
-    wrinkled = amplitudes[1] >= settings.wrinkle_threshold
+    wrinkled = reference_amplitude >= settings.wrinkle_threshold
     return Agreement(
         misfit=misfit,
         misfit_rms=rms,
         misfit_share=rms / largest if largest > 0 else float("nan"),
         compared_share=float(known.mean()),
-        amplitude=_ratio(*amplitudes, wrinkled),
-        wavelength=_ratio(*wavelengths, wrinkled),
+        amplitude=_ratio(amplitude, reference_amplitude, wrinkled),
+        wavelength=_ratio(wavelength, reference_wavelength, wrinkled),
     )
 
 
-def _ratio(values: Array, reference: Array, wrinkled: Array) -> Ratio:
+def _ratio(values: Array, reference: Array, wrinkled: NDArray[np.bool_]) -> Ratio:
     ratio = np.divide(values, reference, out=np.full(values.shape, np.nan), where=wrinkled)
     known = ratio[np.isfinite(ratio)]
     if not known.size:
@@ -209,7 +219,9 @@ def _quantities(motions: Mapping[str, ComparedMotion], contacts: tuple[float, ..
     """What at least two of the analyses have in common; a name with ``_sigma`` in it goes with one without."""
     summaries = [motion.analysis.summary for motion in motions.values()]
     names = dict.fromkeys(name for summary in summaries for name in summary)
-    rows = [_quantity("recorded_contact_time_s", [_known(value) for value in contacts], [None] * len(contacts))]
+    rows = [
+        _quantity("recorded_contact_time_s", [_known(value) for value in contacts], [None] * len(contacts))
+    ]
     for name in names:
         values = [summary.get(name) for summary in summaries]
         if "_sigma_" in name or name == "contact_time_s" or sum(value is not None for value in values) < 2:

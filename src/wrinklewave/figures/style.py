@@ -115,7 +115,7 @@ def space_time_map(
     limits: tuple[float, float],
     extend: str,
 ) -> AxesImage:
-    """Map over laboratory position (mm, to the right) and time (ms, upwards), with its colour bar."""
+    """Map over laboratory position (mm, to the right) and time (ms, upwards), with a colour bar if it has a label."""
     half_x, half_t = 0.5 * (x[1] - x[0]), 0.5 * (time[-1] - time[0]) / (time.size - 1)
     extent = (x[0] - half_x, x[-1] + half_x, time[0] - half_t, time[-1] + half_t)
     even = np.linspace(time[0], time[-1], time.size)
@@ -132,7 +132,8 @@ def space_time_map(
     )
     axes.set_xlabel("position $x$ (mm)")
     axes.set_ylabel("time (ms)")
-    colour_bar(axes, image, label=label, extend=extend)
+    if label:
+        colour_bar(axes, image, label=label, extend=extend)
     return image
 
 

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wrinklewave.experiments.paper_table import Row
-from wrinklewave.figures.registry import FIGURES
+from wrinklewave.figures.registry import FIGURES, FigureSpec
+from wrinklewave.figures.side_by_side import ComparisonFigure
 from wrinklewave.laboratory_frame import Array
 from wrinklewave.report.formats import number, shown
 from wrinklewave.report.tables import bulk_choices, remarks
@@ -73,13 +74,13 @@ def render(context: ReportContext) -> str:
     """Return the report as HTML."""
     numbers = {name: value for name, value in context.summary.items() if _is_number(value)}
     return (
-        _environment()
+        environment()
         .get_template("report.html")
         .render(
             context=context,
             headline=[shown(name, numbers[name]) for name in HEADLINE if numbers.get(name) is not None],
             results=[shown(name, value) for name, value in numbers.items()],
-            figures=[_figure(name, file) for name, file in context.figures.items()],
+            figures=[picture(name, FIGURES[name], file) for name, file in context.figures.items()],
             **_comparison(context.comparison),
             balance=_balance(context.history),
         )
@@ -88,21 +89,22 @@ def render(context: ReportContext) -> str:
 
 def comparison_html(rows: Sequence[Row]) -> str:
     """Return the comparison with the paper alone, as an HTML table."""
-    return _environment().get_template("comparison.html").render(**_comparison(rows))
+    return environment().get_template("comparison.html").render(**_comparison(rows))
 
 
-def _environment() -> Environment:
+def environment() -> Environment:
+    """The templates, with the filter ``number``."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
-    environment = Environment(
+    found = Environment(
         loader=PackageLoader("wrinklewave.report", "templates"),
         autoescape=True,
         trim_blocks=True,
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    environment.filters |= {"number": number}
-    return environment
+    found.filters |= {"number": number}
+    return found
 
 
 def _comparison(rows: Sequence[Row]) -> dict[str, Any]:
@@ -113,8 +115,8 @@ def _is_number(value: object) -> bool:
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
 
 
-def _figure(name: str, file: Path) -> dict[str, str]:
-    spec = FIGURES[name]
+def picture(name: str, spec: FigureSpec | ComparisonFigure, file: Path) -> dict[str, str]:
+    """A figure as the templates take it."""
     number = f"Fig. {spec.number}" if spec.number else ""
     return {
         "name": name,

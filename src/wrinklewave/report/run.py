@@ -27,7 +27,11 @@ def compare_with_paper(run: Run, summaries: Mapping[str, Mapping[str, Any]]) -> 
     """
     if not is_papers(run.case):
         return []
-    theory = {choice: theory_report(with_bulk_response(run.case, choice)) for choice in summaries if choice != "custom"}
+    theory = {
+        choice: theory_report(with_bulk_response(run.case, choice))
+        for choice in summaries
+        if choice != "custom"
+    }
     return paper_table(summaries, theory)
 
 
@@ -35,7 +39,9 @@ def present(run: Run, comparison: Sequence[Row]) -> None:
     """Write ``figures/``, ``comparison.json`` and ``report.html`` into the folder of a finished run."""
     assert run.folder is not None  # only runs with a folder are presented
     figures = write_all(run.folder / "figures", inputs_of(run))
-    (run.folder / "comparison.json").write_text(json.dumps(as_json(comparison), indent=2) + "\n", encoding="utf-8")
+    (run.folder / "comparison.json").write_text(
+        json.dumps(as_json(comparison), indent=2) + "\n", encoding="utf-8"
+    )
     write(
         run.folder / "report.html",
         ReportContext(

@@ -1,0 +1,58 @@
+"""What figures of a comparison are drawn from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wrinklewave.figures.inputs import FigureInputs
+
+if TYPE_CHECKING:
+    from wrinklewave.experiments.compare import Comparison
+
+LINE_STYLES = ("-", "--", ":", "-.")
+SHARES_OF_TIME = (0.25, 0.5, 0.75)
+
+
+@dataclass(frozen=True, eq=False)
+class ComparedInputs:
+    """A comparison, and each of its surface motions as other figures take it.
+
+    Attributes:
+        comparison: as computed.
+        motions: by name, the reference first.
+    """
+
+    comparison: Comparison
+    motions: dict[str, FigureInputs]
+
+    @property
+    def first(self) -> FigureInputs:
+        """The reference."""
+        return next(iter(self.motions.values()))
+
+    @property
+    def styled(self) -> list[tuple[str, FigureInputs, str]]:
+        """Name, surface motion and line style of each."""
+        return [
+            (name, motion, LINE_STYLES[number % len(LINE_STYLES)])
+            for number, (name, motion) in enumerate(self.motions.items())
+        ]
+
+
+def compared_inputs(comparison: Comparison) -> ComparedInputs:
+    """Inputs with the positions and times of the settings that all share; a few of the common times if none."""
+    grid, settings = comparison.grid, comparison.settings
+    positions = tuple(x for x in settings.positions if grid.x[0] <= x <= grid.x[-1])
+    times = tuple(t for t in settings.times if grid.time[0] <= t <= grid.time[-1])
+    if not times:
+        times = tuple(float(t) for t in np.quantile(grid.time, SHARES_OF_TIME))
+    return ComparedInputs(
+        comparison,
+        {
+            name: FigureInputs(motion.subject, motion.analysis, positions, times)
+            for name, motion in comparison.motions.items()
+        },
+    )
