@@ -33,6 +33,7 @@ autodoc_typehints = "description"
 autodoc_typehints_description_target = "documented"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
+autodoc_class_signature = "separated"
 
 sphinx_gallery_conf = {
     "examples_dirs": "examples",
@@ -42,6 +43,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "show_memory": False,
     "min_reported_time": 1e9,  # how long an example took says more about the machine than about the example
+    "write_computation_times": False,
 }
 
 html_theme = "pydata_sphinx_theme"

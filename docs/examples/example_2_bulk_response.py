@@ -2,8 +2,8 @@
 2. What the bulk modulus does
 =============================
 
-The paper gives the shear modulus in time, but not the bulk modulus. Its three readings differ ahead of the front: with K
-at its long-term value the surface stays flat there, as the images of the experiment show; with K at its instantaneous
+The paper gives the shear modulus in time, but not the bulk modulus. Its three readings differ ahead of the front: with
+K at its long-term value the surface stays flat there, as the images of the experiment show; with K at its instantaneous
 value at short times the whole surface lifts at once.
 """
 
