@@ -23,8 +23,10 @@ if TYPE_CHECKING:
     from wrinklewave.config.case import Case
     from wrinklewave.config.experiment import load_experiment
     from wrinklewave.config.reading import case_from_text, load_case
+    from wrinklewave.experiments.compare import compare
     from wrinklewave.experiments.filming import film_run
     from wrinklewave.experiments.simulate import Run, simulate
+    from wrinklewave.experiments.simulated_surface import rewrinkled
     from wrinklewave.imaging.frames import open_recording
     from wrinklewave.surface import read as read_surface
     from wrinklewave.surface import write as write_surface
@@ -36,11 +38,13 @@ __all__ = [
     "__version__",
     "analyse",
     "case_from_text",
+    "compare",
     "film_run",
     "load_case",
     "load_experiment",
     "open_recording",
     "read_surface",
+    "rewrinkled",
     "simulate",
     "theory_report",
     "write_surface",
@@ -51,11 +55,13 @@ _HOMES = {
     "Run": "experiments.simulate:Run",
     "analyse": "analysis.analyse:analyse",
     "case_from_text": "config.reading:case_from_text",
+    "compare": "experiments.compare:compare",
     "film_run": "experiments.filming:film_run",
     "load_case": "config.reading:load_case",
     "load_experiment": "config.experiment:load_experiment",
     "open_recording": "imaging.frames:open_recording",
     "read_surface": "surface:read",
+    "rewrinkled": "experiments.simulated_surface:rewrinkled",
     "simulate": "experiments.simulate:simulate",
     "theory_report": "theory.report:report",
     "write_surface": "surface:write",
