@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wrinklewave._jit import serial
+from wrinklewave.dynamics.self_contact import NO_BINS, keep_apart
 
 FREE, FIXED, ROLLER = 0, 1, 2
 LEFT_FREE, LEFT_MOVED, LEFT_HELD, LEFT_LINEAR, LEFT_STRAIGHT, LEFT_STRUCK = 0, 1, 2, 3, 4, 5
@@ -27,7 +28,7 @@ class Boundary(NamedTuple):
 
     ``motion`` and ``motion_across`` [n_segments, 6] are piecewise cubic histories of the plate or end: t0, t1 [s],
     U0, U1 [m], V0, V1 [m/s]; ``old`` [3, 4, n] holds u, w, vx, vy before the step, of the left column, the bottom row
-    and the top row.
+    and the top row. A free surface may touch itself if there are ``bins`` [2, n_columns] for it to be sorted into.
     """
 
     left: int
@@ -40,6 +41,7 @@ class Boundary(NamedTuple):
     motion: np.ndarray
     motion_across: np.ndarray
     old: np.ndarray
+    bins: np.ndarray = NO_BINS
 
 
 @serial
@@ -196,8 +198,20 @@ def _wall(dt, a, boundary, totals):
 
 
 @serial
+def hold_apart(dt, a, boundary, totals):
+    """Contact of the free surfaces with themselves; before all other conditions."""
+    last = a.u.shape[0] - 1
+    if boundary.top == FREE:
+        totals[CONTACT_LOSS] += keep_apart(a, last, 1.0, dt, boundary.old[2], boundary.bins)
+    if boundary.bottom == FREE:
+        totals[CONTACT_LOSS] += keep_apart(a, 0, -1.0, dt, boundary.old[1], boundary.bins)
+
+
+@serial
 def apply_boundary(t, dt, a, boundary, totals):
     """Make the state at time ``t`` [s], reached by a free step ``dt``, obey the conditions at the edges."""
+    if boundary.bins.shape[1] > 0:
+        hold_apart(dt, a, boundary, totals)
     if boundary.bottom == ROLLER:
         _stop_across(a, 0, dt, totals)
     if boundary.top == ROLLER:
