@@ -104,6 +104,14 @@ def _hourglass(X, Y, bx, by, u):
     return h - hX * dot(bx, u) - hY * dot(by, u)
 
 
+@scalar
+def _hourglass_overstress(q, qx, qy, memory, terms, factors, j, i, back):
+    """Sum over terms of F⁻ᵀ H, where H is the history of Fᵀ (qx, qy)."""
+    H1 = overstresses(memory, terms, factors, 4, j, i, q.F11 * qx + q.F21 * qy, back)
+    H2 = overstresses(memory, terms, factors, 5, j, i, q.F12 * qx + q.F22 * qy, back)
+    return (q.F22 * H1 - q.F21 * H2) / q.J, (q.F11 * H2 - q.F12 * H1) / q.J
+
+
 @vector
 def _survey_run(j, run, dt, a, memory, terms, out):
     """Contribution of each element of a run of row ``j``, in ``out`` [N_COLUMNS, n_columns]: sums are taken afterwards, so that
@@ -155,10 +163,11 @@ def _survey_run(j, run, dt, a, memory, terms, out):
         if n == 1:
             qx0, qy0 = _hourglass(X, Y, bx, by, u0), _hourglass(X, Y, bx, by, w0)
             stiffness = hourglass * HOURGLASS_STIFFNESS * A * (dot(bx, bx) + dot(by, by))
-            Qx = mu * (qx + qx0) + overstresses(memory, terms, factors, 4, r, i, qx, False)
-            Qx += overstresses(memory, terms, factors, 4, r, i, qx0, True)
-            Qy = mu * (qy + qy0) + overstresses(memory, terms, factors, 5, r, i, qy, False)
-            Qy += overstresses(memory, terms, factors, 5, r, i, qy0, True)
+            F, F0 = deformation(bx, by, u, w), deformation(bx, by, u0, w0)
+            Qx, Qy = _hourglass_overstress(F, qx, qy, memory, terms, factors, r, i, False)
+            Tx, Ty = _hourglass_overstress(F0, qx0, qy0, memory, terms, factors, r, i, True)
+            Qx += Tx + mu * (qx + qx0)
+            Qy += Ty + mu * (qy + qy0)
             control += 0.5 * stiffness * (Qx * (qx - qx0) + Qy * (qy - qy0)) / dt
         out[STORED, i], out[SPRINGS, i], out[VISCOUS, i], out[BULK_VISCOUS, i] = stored, springs, viscous, bulk_viscous
         out[HOURGLASS, i], out[J_LEAST, i], out[J_MOST, i] = control, J_least, J_most

@@ -6,7 +6,7 @@ between two rows are moved as soon as both buffers are full. The whole step so p
 
 Arrays: ``X, Y`` undeformed positions [m], ``u, w`` displacements [m], ``vx, vy`` velocities [m/s], each
 [n_node_rows, n_node_columns]; ``memory`` a tuple of arrays [n_element_rows, n_element_columns]: for each Prony term
-the components 11, 22, 12, 33, hourglass x, hourglass y, and mean stress if the bulk relaxes; ``terms`` a tuple whose
+the components 11, 22, 12, 33, hourglass 1, hourglass 2, and mean stress if the bulk relaxes; ``terms`` a tuple whose
 length is the number of terms, known when the kernel is compiled so that its loop unrolls; ``factors`` [n_terms, 5]: b
 of the last step, a and b of the next for the shear, then both b for the bulk;
 ``forces`` [8, n_element_columns + 2]: f1x, f1y, ... f4x, f4y, shifted by one column and zero at both ends.
@@ -73,7 +73,8 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
         qx = (u[r, i] - u[r, k]) + (u[s, k] - u[s, i]) - hX * G11 - hY * G12
         qy = (w[r, i] - w[r, k]) + (w[s, k] - w[s, i]) - hX * G21 - hY * G22
 
-        A11, A22, A12, A33, Qx, Qy, p = mu * s11, mu * s22, mu * s12, mu * s33, mu * qx, mu * qy, K * e
+        q1, q2, Q1, Q2 = F11 * qx + G21 * qy, G12 * qx + F22 * qy, 0.0, 0.0
+        A11, A22, A12, A33, p = mu * s11, mu * s22, mu * s12, mu * s33, K * e
         for m in range(len(terms)):
             b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
             H = overstress(memory[stride * m][r, i], b, s11)
@@ -88,12 +89,12 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
             H = overstress(memory[stride * m + 3][r, i], b, s33)
             A33 += H
             memory[stride * m + 3][r, i] = next_memory(H, a, b_next, s33)
-            H = overstress(memory[stride * m + 4][r, i], b, qx)
-            Qx += H
-            memory[stride * m + 4][r, i] = next_memory(H, a, b_next, qx)
-            H = overstress(memory[stride * m + 5][r, i], b, qy)
-            Qy += H
-            memory[stride * m + 5][r, i] = next_memory(H, a, b_next, qy)
+            H = overstress(memory[stride * m + 4][r, i], b, q1)
+            Q1 += H
+            memory[stride * m + 4][r, i] = next_memory(H, a, b_next, q1)
+            H = overstress(memory[stride * m + 5][r, i], b, q2)
+            Q2 += H
+            memory[stride * m + 5][r, i] = next_memory(H, a, b_next, q2)
             if bulk_relaxes:
                 H = overstress(memory[stride * m + 6][r, i], factors[m, 3], e)
                 p += H
@@ -105,6 +106,7 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
             linear,
             quadratic,
         )
+        Qx, Qy = mu * qx + Ji * (F22 * Q1 - G21 * Q2), mu * qy + Ji * (F11 * Q2 - G12 * Q1)
         S11, S22, S12 = second_piola_kirchhoff(A11, A22, A12, A33, C11, C22, C12, J, J23, Ji2, p)
         stiffness = hourglass_stiffness(b1x, b1y, b2x, b2y, A, hourglass)
         T1, T2 = A * (F11 * S11 + G12 * S12), A * (F11 * S12 + G12 * S22)

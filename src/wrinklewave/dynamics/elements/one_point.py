@@ -1,9 +1,11 @@
 """Four-node quadrilateral with one integration point and hourglass control.
 
 The hourglass field is what is left of the nodal displacements after rigid and uniform motion (Flanagan & Belytschko
-1981, eq. 41). Its force has the memory of the material's shear stress, so that the control is as stiff as the
-instantaneous modulus in a fast event and relaxes as the material does. Its stiffness for a factor of one is that of a
-fully integrated, isochoric rectangle, averaged over both directions so that it turns with the element:
+1981, eq. 41), a vector q. Its force has the memory of the material's shear stress, so that the control is as stiff as
+the instantaneous modulus in a fast event and relaxes as the material does. As there, the memory H is of what is pulled
+back to the reference configuration, Fᵀ q, and is pushed forward to F⁻ᵀ H, so that rotations only rotate the force. Its
+stiffness for a factor of one is that of a fully integrated, isochoric rectangle, averaged over both directions so that
+it turns with the element:
 
     k = mu A (7/72) (gx + gy),   gx = sum_a (dN_a/dX)², gy = sum_a (dN_a/dY)²
 """
