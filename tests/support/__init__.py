@@ -1,0 +1,1 @@
+"""What several tests share: small models, independent solutions, and the ledger of verified numbers."""
