@@ -5,7 +5,7 @@ Amplitudes are compared at material points, away from both ends, where wrinkles 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -97,9 +97,8 @@ def agreement(member: Member, model: str, *, n_points: int = 121) -> Agreement:
     ratio = other[grown] / reference[grown]
     threshold = member.case.analysis.wrinkle_threshold
     onset = arrival_times(time, other, threshold) / arrival_times(time, reference, threshold)
-    return Agreement(
-        *(float(v) for v in np.percentile(ratio, [50, 5, 95])), onset_median=float(np.nanmedian(onset))
-    )
+    median, low, high = (float(value) for value in np.percentile(ratio, [50, 5, 95]))
+    return Agreement(median, low, high, float(np.nanmedian(onset)))
 
 
 def speeds_and_amplitudes(members: Sequence[Member]) -> list[dict[str, str | float]]:
@@ -127,6 +126,6 @@ def speeds_and_amplitudes(members: Sequence[Member]) -> list[dict[str, str | flo
     return rows
 
 
-def _number(summary: dict[str, object], key: str) -> float:
+def _number(summary: Mapping[str, object], key: str) -> float:
     value = summary.get(key)
     return float(value) if isinstance(value, int | float) else float("nan")

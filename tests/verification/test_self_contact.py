@@ -1,0 +1,92 @@
+"""A surface that folds onto itself: bodies do not share space, momentum is kept, energy is accounted for."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from wrinklewave.dynamics.boundary import CONTACT_LOSS, FREE, LEFT_MOVED, N_TOTALS, ROLLER, Boundary
+from wrinklewave.dynamics.model import Model, assemble
+from wrinklewave.dynamics.self_contact import keep_apart
+from wrinklewave.dynamics.step import advance
+from wrinklewave.materials.moduli import Viscoelastic, bulk_modulus
+from wrinklewave.mesh.block import GridMesh
+
+if TYPE_CHECKING:
+    from support.ledger import Verified
+
+LENGTH, HEIGHT, COLUMNS, ROWS = 10e-3, 5e-3, 60, 24
+
+
+def grooved_block(*, self_contact: bool) -> Model:
+    """A block whose surface has a deep groove, between a frictionless floor and a plate that pushes its left side."""
+    x = np.linspace(0.0, LENGTH, COLUMNS + 1)
+    surface = HEIGHT - 3.5e-3 * np.exp(-(((x - LENGTH / 2) / 0.7e-3) ** 2))
+    X, share = np.meshgrid(x, np.linspace(0.0, 1.0, ROWS + 1))
+    mesh = GridMesh(X=X, Y=share * surface, layer=np.zeros((ROWS, COLUMNS), dtype=np.int64))
+    none = np.zeros(0)
+    solid = Viscoelastic(965.0, 44e3, bulk_modulus(44e3, 0.45), none, none, none)
+    boundary = Boundary(
+        left=LEFT_MOVED,
+        right=ROLLER,
+        top=FREE,
+        bottom=ROLLER,
+        wall=False,
+        length=LENGTH,
+        friction=0.0,
+        motion=np.array([[0.0, 2e-3, 0.0, 3e-3, 0.0, 0.0]]),
+        motion_across=np.zeros((1, 6)),
+        old=np.zeros((3, 4, COLUMNS + 1)),
+        bins=np.zeros((2, (COLUMNS + 1) * self_contact), dtype=np.int64),
+    )
+    return assemble(mesh, [solid], boundary)
+
+
+def overlap(model: Model) -> float:
+    """How far the two sides of the groove have passed each other, at most, in element lengths."""
+    a = model.arrays
+    x, y = a.X[-1] + a.u[-1], a.Y[-1] + a.w[-1]
+    middle = COLUMNS // 2
+    left, right = slice(middle - 12, middle), slice(middle + 1, middle + 13)
+    heights = np.linspace(max(y[left].min(), y[right].min()), min(y[left].max(), y[right].max()), 200)
+    order = np.argsort(y[left])
+    face = np.interp(heights, y[left][order], x[left][order])
+    order = np.argsort(y[right])
+    return float((face - np.interp(heights, y[right][order], x[right][order])).max() / (LENGTH / COLUMNS))
+
+
+@pytest.mark.parametrize("self_contact", [True, False])
+def test_a_closing_groove_does_not_close_beyond_contact(self_contact: bool, verified: Verified) -> None:
+    """Its sides touch and stay where they touch; without the contact they pass through each other."""
+    model, totals, dt = grooved_block(self_contact=self_contact), np.zeros(N_TOTALS), 4e-7
+    for n in range(40):
+        state = model.arrays, model.memory_rows, model.terms, model.boundary
+        advance(100, n * 100 * dt, dt if n else 0.0, dt, *state, totals)
+    if self_contact:
+        verified.error(
+            "overlap of a surface in contact with itself, per element", max(overlap(model), 0.0), 0.2
+        )
+        assert totals[CONTACT_LOSS] >= 0.0
+    else:
+        assert overlap(model) > 2.0
+
+
+def test_contact_keeps_momentum(verified: Verified) -> None:
+    """sum m v does not change by impulses within the body."""
+    model = grooved_block(self_contact=True)
+    a, rng = model.arrays, np.random.default_rng(0)
+    a.u[-1] = (LENGTH / 2 - a.X[-1]) * 0.8  # the sides of the groove pass each other
+    a.u[-1, COLUMNS // 2 - 6 : COLUMNS // 2] += 0.6e-3
+    a.vx[-1], a.vy[-1] = rng.normal(size=(2, COLUMNS + 1))
+    mass = 1.0 / a.inverse_mass[-1]
+
+    def momentum() -> np.ndarray:
+        return np.array([(mass * a.vx[-1]).sum(), (mass * a.vy[-1]).sum()])
+
+    before, velocities = momentum(), a.vx[-1].copy()
+    keep_apart(a, ROWS, 1.0, 1e-6, model.boundary.old[2], model.boundary.bins)
+    assert (a.vx[-1] != velocities).any()  # something touched
+    given = np.abs(momentum() - before).max() / (mass * np.hypot(a.vx[-1], a.vy[-1])).sum()
+    verified.error("momentum given to a body by contact with itself", float(given), 1e-12)
