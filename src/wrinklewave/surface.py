@@ -4,20 +4,20 @@ Dimensions ``time``, ``x`` (a fixed laboratory grid) and ``point`` (material poi
 probe wires). SI units, each named in the variable's ``units`` attribute. NaN where nothing was detected or outside
 the sample. ``x`` points from the struck end (0 before impact) to the held end, ``y`` out of the sample.
 
-========================  ================  ====  =======================================================
-variable                  dimensions        unit  meaning
-========================  ================  ====  =======================================================
-``y``                     time, x           m     height of the visible surface, wrinkles included
-``u_y``                   time, x           m     ``y`` minus its value in the undeformed state
-``x_boundary``            time              m     position of the struck end at the surface
-``x_p``, ``y_p``          time, point       m     positions of material points (without the wrinkle model)
-``y_smooth``, ``u_y_smooth``  time, x       m     optional: the substrate's surface without wrinkles
-``u_y_sigma``             time, x           m     optional: standard uncertainty of ``u_y``
-``strain_xx``             time, point       1     optional: depth-averaged nominal strain, compression > 0
-``strain_rate_xx``        time, point       1/s   optional: depth-averaged rate of the same
-``stress_xx``             time, point       Pa    optional: depth-averaged nominal stress, compression > 0
-``amplitude``             time, point       m     optional: wrinkle amplitude that a model gives
-========================  ================  ====  =======================================================
+============================  ===========  ====  ============================================================
+variable                      dimensions   unit  meaning
+============================  ===========  ====  ============================================================
+``y``                         time, x      m     height of the visible surface, wrinkles included
+``u_y``                       time, x      m     ``y`` minus its value in the undeformed state
+``x_boundary``                time         m     position of the struck end at the surface
+``x_p``, ``y_p``              time, point  m     positions of material points (without the wrinkle model)
+``y_smooth``, ``u_y_smooth``  time, x      m     optional: the substrate's surface without wrinkles
+``u_y_sigma``                 time, x      m     optional: standard uncertainty of ``u_y``
+``strain_xx``                 time, point  1     optional: depth-averaged nominal strain, compression > 0
+``strain_rate_xx``            time, point  1/s   optional: depth-averaged rate of the same
+``stress_xx``                 time, point  Pa    optional: depth-averaged nominal stress, compression > 0
+``amplitude``                 time, point  m     optional: wrinkle amplitude that a model gives
+============================  ===========  ====  ============================================================
 
 Coordinates: ``time`` [s], ``x`` [m], ``X`` (point) [m]: the material points' undeformed positions. Attributes:
 ``kind`` ("simulation" or "measurement"), ``name``, ``length`` [m] (undeformed), and what else its maker records.
