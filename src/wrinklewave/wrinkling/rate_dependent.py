@@ -104,23 +104,40 @@ def competing_wrinkles(
     Arguments as in :func:`wrinkle_amplitude`, with ``wavelengths`` of shape [n_wavelengths] and ``imperfection``
     one amplitude for all, or of shape [n_wavelengths] or [n_points, n_wavelengths].
     """
-    time, strain = _checked_history(time, strain)
-    wavelengths = _checked_wavelengths(wavelengths)
-    wavenumbers = 2 * np.pi / wavelengths
+    time, strain = checked_history(time, strain)
+    instants, bilayer, wavelengths = prepared(time, strain, film, substrate, wavelengths, imperfection)
+    grown = at_times(time, instants, _march(at_times(instants, time, strain), bilayer))
+    return CompetingWrinkles(wavelengths, np.moveaxis(grown, 1, 2) * wavelengths / (2 * np.pi))
+
+
+def prepared(
+    time: Array,
+    strain: Array,
+    film: FilmLayer,
+    substrate: Viscoelastic,
+    wavelengths: ArrayLike,
+    imperfection: ArrayLike,
+    *,
+    reserve: float = 0.0,
+) -> tuple[Array, Bilayer, Array]:
+    """Instants of the steps [n_steps + 1], what stays the same in them, and the wavelengths [m].
+
+    Arguments as in :func:`competing_wrinkles`; the film's table reaches ``reserve`` beyond the largest strain.
+    """
+    lengths = _checked_wavelengths(wavelengths)
+    wavenumbers = 2 * np.pi / lengths
     slopes = _initial_slopes(imperfection, wavenumbers, strain.shape[1])
-    relieved = (
-        float((slopes**2).sum(axis=1).max()) / 4
-    )  # strain at most by which the film was longer to begin with
+    longer = shortening(slopes).sum(axis=1)  # strain by which the film is longer than flat to begin with
+    highest = max(float(strain.max()), 0.0) + float(longer.max()) + reserve
     table = film_table(
         film.moduli,
         thickness=film.thickness,
         wavenumbers=wavenumbers,
-        strain_range=(min(strain.min(), 0.0) - UNLOADING_RESERVE, max(strain.max(), 0.0) + 1.5 * relieved),
+        strain_range=(min(float(strain.min()), 0.0) - UNLOADING_RESERVE, highest),
         unit=substrate.mu_inf,
     )
-    instants = np.linspace(
-        time[0], time[-1], _number_of_steps(time, strain, film, substrate, wavenumbers) + 1
-    )
+    n_steps = _number_of_steps(time, strain, film, substrate, wavenumbers)
+    instants = np.linspace(time[0], time[-1], n_steps + 1)
     step = float(instants[1] - instants[0])
     bilayer = Bilayer(
         substrate=stepped_moduli(substrate, step=step, unit=substrate.mu_inf),
@@ -128,11 +145,10 @@ def competing_wrinkles(
         table=table,
         density=substrate.density / (substrate.mu_inf * wavenumbers**2),
         imperfection=slopes.T,
-        shortened=shortening(slopes).sum(axis=1),
+        shortened=longer,
         step=step,
     )
-    grown = _at(time, instants, _march(_at(instants, time, strain), bilayer))
-    return CompetingWrinkles(wavelengths, np.moveaxis(grown, 1, 2) / wavenumbers)
+    return instants, bilayer, lengths
 
 
 def _march(strain: Array, bilayer: Bilayer) -> Array:
@@ -146,7 +162,7 @@ def _march(strain: Array, bilayer: Bilayer) -> Array:
     return grown
 
 
-def _at(instants: Array, times: Array, values: Array) -> Array:
+def at_times(instants: Array, times: Array, values: Array) -> Array:
     """Values [n_times, ...] interpolated linearly at other instants."""
     from scipy.interpolate import make_interp_spline
 
@@ -169,7 +185,12 @@ def _number_of_steps(
     return int(np.clip(np.ceil(wanted), LEAST_STEPS, MOST_STEPS))
 
 
-def _checked_history(time: ArrayLike, strain: ArrayLike) -> tuple[Array, Array]:
+def checked_history(time: ArrayLike, strain: ArrayLike) -> tuple[Array, Array]:
+    """Times and strains as arrays.
+
+    Raises:
+        InputError: if they make no sense.
+    """
     time, strain = np.asarray(time, dtype=float), np.asarray(strain, dtype=float)
     if time.ndim != 1 or strain.ndim != 2 or strain.shape[0] != time.size:
         raise InputError(

@@ -123,8 +123,8 @@ def flat_step(before: FlatState, stretch: Array, moduli: SteppedModuli) -> FlatS
     for _ in range(MOST_ITERATIONS):
         now = np.array(shape(stretch, l2))
         A, p = left_A + moduli.mu_acting * now, left_p + moduli.K_acting * (stretch * l2 - 1.0)
-        axial, transverse = normal_stress(stretch, l2, A, p)
-        stiffness = np.array(held_stiffness(stretch, l2, A, p))
+        axial, transverse = normal_stress(stretch, l2, tuple(A), p)
+        stiffness = np.array(held_stiffness(stretch, l2, tuple(A), p))
         stiffness += moduli.mu_acting * np.array(shear_stiffness(stretch, l2))
         stiffness += moduli.K_acting * np.array(bulk_stiffness(stretch, l2))
         correction = transverse / (l2 * stiffness[1])

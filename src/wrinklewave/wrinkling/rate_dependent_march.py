@@ -8,8 +8,7 @@ wrinkles take up: one scalar equation for every material point. Symbols as in ``
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +30,8 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-8
 """Of the film's strain."""
 MOST_ITERATIONS = 100
+STRAIN_DIFFERENCE = 1e-4
+"""Of the central difference of the film's force."""
 
 
 @dataclass(frozen=True)
@@ -82,15 +83,27 @@ class WrinkleState:
 
 
 @dataclass(frozen=True)
-class Meeting:
-    """Film and substrate at one trial strain of the film.
+class BegunStep:
+    """A step in which the substrate has been compressed to the axial ``strain`` [P], and nothing else is known yet."""
 
-    ``excess`` [P] is how far that strain lies above the axial strain less what the wrinkles take up; ``V0_film`` is
-    V0 counted from where the flat film puts the initial wrinkle.
+    before: WrinkleState
+    strain: Array
+    flat: FlatState
+    below: Interface
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Film and substrate at one trial strain of the film's middle surface.
+
+    ``excess`` [P] is how far that strain lies above the axial ``strain`` less what the wrinkles take up, ``slope`` its
+    rise with the film's strain; ``V0_film`` is V0 counted from where the flat film puts the initial wrinkle.
     """
 
+    strain: Array
     film_strain: Array
     excess: Array
+    slope: Array
     film: FilmResponse
     flat_film: FlatState
     U0: Array
@@ -121,34 +134,107 @@ def wrinkle_step(before: WrinkleState, strain: Array, bilayer: Bilayer) -> Wrink
     Raises:
         RunError: if the film's strain leaves the table or cannot be found.
     """
+    begun = begin_step(before, strain, bilayer)
+    return end_step(begun, meet_film(begun, strain, before.slope, bilayer), bilayer)
+
+
+def begin_step(before: WrinkleState, strain: Array, bilayer: Bilayer) -> BegunStep:
+    """Compress the substrate to the axial ``strain`` [P], and find what resists the motion of its surface."""
     stretch = 1.0 - strain
     flat = flat_step(before.flat, stretch, bilayer.substrate)
     below = interface(
         before.waves, stretch, flat, bilayer.substrate, bilayer.density, bilayer.table.mass, bilayer.step
     )
+    return BegunStep(before, strain, flat, below)
 
-    def meet(film_strain: Array) -> Meeting:
-        return _meet(film_strain, before, strain, flat, below, bilayer)
 
-    unwrinkled = before.film_strain + strain - before.strain
-    met, slope = _solve(meet, unwrinkled - before.taken_up, before.slope, strain, bilayer)
+def meet_film(begun: BegunStep, strain: Array, slope: Array, bilayer: Bilayer) -> Meeting:
+    """Let film and substrate meet where the wrinkles leave nothing of the axial ``strain`` [P] over.
+
+    The film's strain of no excess is the only root of a function that rises with a slope of 1 or more. Secant steps
+    within a bracket, which is halved where they leave it; unstable trials have an excess that says: less.
+
+    Args:
+        begun: step.
+        strain: at its end; it may differ a little from that for which the step was begun.
+        slope: of the excess, as a first guess, shape [P].
+        bilayer: of the step.
+
+    Raises:
+        RunError: if the film's strain leaves the table or cannot be found.
+    """
+    before = begun.before
+    low = np.full_like(strain, bilayer.table.first_strain)
+    high = strain + bilayer.shortened
+    x, last = np.minimum(before.film_strain + strain - before.strain - before.taken_up, high), None
+    for _ in range(MOST_ITERATIONS):
+        met = _meet(x, begun, strain, slope, bilayer)
+        value = met.excess
+        if last is not None:
+            moved = x != last.film_strain
+            rise = np.divide(value - last.excess, x - last.film_strain, out=slope.copy(), where=moved)
+            slope = np.maximum(rise, 0.5)
+        done = (np.abs(value) < TOLERANCE) | (high - low < TOLERANCE)
+        if done.all():
+            _check_reach(x, strain, bilayer.table)
+            return replace(met, slope=slope)
+        low, high = np.where(value > 0.0, low, x), np.where(value > 0.0, x, high)
+        following = x - value / slope
+        following = np.where((low < following) & (following < high), following, 0.5 * (low + high))
+        x, last = np.where(done, x, following), met
+    worst = int(np.argmax(np.abs(value)))
+    raise RunError(
+        f"the film's strain does not converge at point {worst}, where the strain is {strain[worst]:.4g}"
+    )
+
+
+def end_step(begun: BegunStep, met: Meeting, bilayer: Bilayer) -> WrinkleState:
+    """Take the step to where film and substrate have met."""
+    before = begun.before
     film_force = before.film_force
     if bilayer.film.relaxes:
         film_force = _film_force(met, before.film_force, bilayer.film)
     top_u, top_v, top_initial = met.film.top
     return WrinkleState(
-        strain=strain,
+        strain=met.strain,
         film_strain=met.film_strain,
-        taken_up=unwrinkled - met.film_strain,
-        slope=slope,
-        flat=flat,
+        taken_up=before.film_strain + met.strain - before.strain - met.film_strain,
+        slope=met.slope,
+        flat=begun.flat,
         flat_film=met.flat_film,
-        waves=wave_step(before.waves, below, met.U0, met.V0, stretch, flat, bilayer.substrate, bilayer.step),
+        waves=wave_step(
+            before.waves,
+            begun.below,
+            met.U0,
+            met.V0,
+            1.0 - begun.strain,
+            begun.flat,
+            bilayer.substrate,
+            bilayer.step,
+        ),
         film_force=film_force,
         top=top_u * met.U0
         + top_v * met.V0_film
         + (top_initial + met.film.transverse_stretch) * bilayer.imperfection,
     )
+
+
+def compressive_force(met: Meeting, bilayer: Bilayer) -> tuple[Array, Array]:
+    """Nominal force along the film per its thickness, compression > 0, and its rise with the axial strain, shape [P].
+
+    Both in the unit of the moduli; the rise is that of a film whose wrinkles take up their share of the strain.
+    """
+    moduli, stretch = bilayer.film, 1.0 - met.film_strain
+    l2 = met.film.transverse_stretch[0]
+    stress = met.flat_film.axial_stress if moduli.relaxes else _relaxed_stress(met.film_strain, l2, moduli)
+    d = STRAIN_DIFFERENCE
+    above, below = (
+        (1.0 - film_strain)
+        * _relaxed_stress(film_strain, bilayer.table.at(film_strain).transverse_stretch[0], moduli)
+        for film_strain in (met.film_strain + d, met.film_strain - d)
+    )
+    rise = (below - above) / (2.0 * d) * moduli.mu_acting / moduli.mu
+    return -stretch * stress, rise / np.maximum(met.slope, 1.0)
 
 
 def shortening(slope: Array) -> Array:
@@ -162,14 +248,9 @@ def shortening(slope: Array) -> Array:
     return 1.0 - 2.0 / np.pi * ellipe(np.minimum(slope**2, 1.0))
 
 
-def _meet(
-    film_strain: Array,
-    before: WrinkleState,
-    strain: Array,
-    flat: FlatState,
-    below: Interface,
-    bilayer: Bilayer,
-) -> Meeting:
+def _meet(film_strain: Array, begun: BegunStep, strain: Array, slope: Array, bilayer: Bilayer) -> Meeting:
+    """Equilibrium of the interface under a film of the given strain [P]."""
+    before, flat, below = begun.before, begun.flat, begun.below
     film, initial = bilayer.table.at(film_strain), bilayer.imperfection
     f_00, f_01, f_11 = film.F
     force = below.force + film.f * initial
@@ -189,7 +270,7 @@ def _meet(
     V0 = (k_01 * force[0] - k_00 * force[1]) / determinant
     shortened = shortening(V0 + flat.transverse_stretch * initial)
     excess = film_strain - strain + np.where(unstable, 1.0, shortened).sum(axis=0) - bilayer.shortened
-    return Meeting(film_strain, excess, film, flat_film, U0, V0, V0 + jump)
+    return Meeting(strain, film_strain, excess, slope, film, flat_film, U0, V0, V0 + jump)
 
 
 def _film_memory(
@@ -209,7 +290,7 @@ def _film_memory(
 def _relaxed_stress(film_strain: Array, transverse_stretch: Array, moduli: SteppedModuli) -> Array:
     """S_11 of a flat film that has relaxed, shape [P]."""
     l1, l2 = 1.0 - film_strain, transverse_stretch
-    return normal_stress(l1, l2, moduli.mu * np.array(shape(l1, l2)), moduli.K * (l1 * l2 - 1.0))[0]
+    return normal_stress(l1, l2, tuple(moduli.mu * np.array(shape(l1, l2))), moduli.K * (l1 * l2 - 1.0))[0]
 
 
 def _film_force(met: Meeting, before: tuple[Array, Array], moduli: SteppedModuli) -> tuple[Array, Array]:
@@ -218,37 +299,6 @@ def _film_force(met: Meeting, before: tuple[Array, Array], moduli: SteppedModuli
     strained = np.stack([f_00 * met.U0 + f_01 * met.V0_film, f_01 * met.U0 + f_11 * met.V0_film], axis=1)
     keep, add = (weights[:, np.newaxis, np.newaxis, np.newaxis] for weights in (moduli.keep, moduli.add))
     return strained, keep * before[1] + add * (strained - before[0])
-
-
-def _solve(
-    meet: Callable[[Array], Meeting], guess: Array, slope: Array, strain: Array, bilayer: Bilayer
-) -> tuple[Meeting, Array]:
-    """Find the film strain of no excess, which rises with a slope of 1 or more: its only root.
-
-    Secant steps within a bracket, which is halved where they leave it. Unstable trials have an excess that says: less.
-    """
-    low = np.full_like(strain, bilayer.table.first_strain)
-    high = strain + bilayer.shortened
-    x, last = np.minimum(guess, high), None
-    for _ in range(MOST_ITERATIONS):
-        met = meet(x)
-        value = met.excess
-        if last is not None:
-            moved = x != last.film_strain
-            rise = np.divide(value - last.excess, x - last.film_strain, out=slope.copy(), where=moved)
-            slope = np.maximum(rise, 0.5)
-        done = (np.abs(value) < TOLERANCE) | (high - low < TOLERANCE)
-        if done.all():
-            _check_reach(x, strain, bilayer.table)
-            return met, slope
-        low, high = np.where(value > 0.0, low, x), np.where(value > 0.0, x, high)
-        following = x - value / slope
-        following = np.where((low < following) & (following < high), following, 0.5 * (low + high))
-        x, last = np.where(done, x, following), met
-    worst = int(np.argmax(np.abs(value)))
-    raise RunError(
-        f"the film's strain does not converge at point {worst}, where the strain is {strain[worst]:.4g}"
-    )
 
 
 def _check_reach(film_strain: Array, strain: Array, table: FilmTable) -> None:

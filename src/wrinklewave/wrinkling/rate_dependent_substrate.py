@@ -45,7 +45,8 @@ class WaveState:
         shape: increments 11, 22, 12, 33 (first axis) of the isochoric shape by depth function (second axis), shape
             [4, 2, M, P].
         dilation: increments of J by depth function, shape [2, M, P].
-        relaxing_shear, relaxing_mean: what the terms add to the increments of A and p, shapes [n, 4, 2, M, P], [n, 2, M, P].
+        relaxing_shear, relaxing_mean: what the terms add to the increments of A and p, shapes [n, 4, 2, M, P] and
+            [n, 2, M, P].
     """
 
     U: Array
