@@ -82,9 +82,16 @@ def write_table(path: Path, members: list[Member]) -> None:
         )
 
 
+def title(member: Member) -> str:
+    """Substrate, speed of the plate and imperfection."""
+    material, imperfection = member.name.split(", ")
+    speed = getattr(member.case.drive, "velocity", float("nan"))
+    return f"{material} substrate, {speed:g} m/s, imperfection {imperfection.replace('um', 'µm')}"
+
+
 def draw_amplitudes(members: list[Member]) -> plt.Figure:
     """Amplitude against time at three material points, one panel per member."""
-    figure, axes = plt.subplots(2, 2, figsize=(9, 6.5), sharex=True, sharey=True, layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(9, 7.4), sharex=True, sharey=True, layout="constrained")
     for panel, member in zip(axes.flat, members, strict=True):
         for model, style in STYLES.items():
             time = member.surfaces[model]["time"].values
@@ -92,8 +99,8 @@ def draw_amplitudes(members: list[Member]) -> plt.Figure:
             for X, colour, curve in zip(POSITIONS, COLOURS, curves, strict=True):
                 label = f"X = {X * 1e3:g} mm, {model}"
                 panel.plot(time * 1e3, curve * 1e3, style, color=colour, lw=1.2, label=label)
-        panel.set_title(f"substrate {member.name.split(', ')[0]}, imperfection {member.name.split(', ')[1]}")
-    axes[0, 0].legend(fontsize=6)
+        panel.set_title(title(member))
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
     figure.supxlabel("time (ms)")
     figure.supylabel("wrinkle amplitude (mm)")
     return figure
@@ -101,7 +108,7 @@ def draw_amplitudes(members: list[Member]) -> plt.Figure:
 
 def draw_profiles(members: list[Member], times: tuple[float, ...] = (0.8e-3, 1.2e-3, 2e-3)) -> plt.Figure:
     """Amplitude against material position at three times, one panel per member."""
-    figure, axes = plt.subplots(2, 2, figsize=(9, 6.5), sharex=True, sharey=True, layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(9, 7.4), sharex=True, sharey=True, layout="constrained")
     X = np.linspace(4e-3, 46e-3, 200)
     for panel, member in zip(axes.flat, members, strict=True):
         for model, style in STYLES.items():
@@ -111,8 +118,8 @@ def draw_profiles(members: list[Member], times: tuple[float, ...] = (0.8e-3, 1.2
                 curve = curves[int(np.argmin(np.abs(known - time)))]
                 label = f"t = {time * 1e3:g} ms, {model}"
                 panel.plot(X * 1e3, curve * 1e3, style, color=colour, lw=1.2, label=label)
-        panel.set_title(f"substrate {member.name.split(', ')[0]}, imperfection {member.name.split(', ')[1]}")
-    axes[0, 0].legend(fontsize=6)
+        panel.set_title(title(member))
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
     figure.supxlabel("undeformed position X (mm)")
     figure.supylabel("wrinkle amplitude (mm)")
     return figure
