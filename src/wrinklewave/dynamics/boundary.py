@@ -15,6 +15,9 @@ from wrinklewave._jit import serial
 from wrinklewave.dynamics.self_contact import NO_BINS, keep_apart
 
 FREE, FIXED, ROLLER = 0, 1, 2
+LEFT, BOTTOM, TOP, RIGHT = range(4)
+"""Edges. A corner belongs to the left end if it can, else to the bottom or the top."""
+
 LEFT_FREE, LEFT_MOVED, LEFT_HELD, LEFT_LINEAR, LEFT_STRAIGHT, LEFT_STRUCK = 0, 1, 2, 3, 4, 5
 
 WORK, CONTACT_LOSS, FRICTION_LOSS, IMPULSE_LEFT, IMPULSE_RIGHT, IMPULSE_ACROSS, FORCE = range(7)
@@ -52,7 +55,13 @@ def position(motion, t):
         return motion[0, 2]
     if t >= motion[n - 1, 1]:
         return motion[n - 1, 3] + motion[n - 1, 5] * (t - motion[n - 1, 1])
-    k = np.searchsorted(motion[:, 1], t)
+    k, last = 0, n - 1
+    while k < last:
+        middle = (k + last) // 2
+        if motion[middle, 1] < t:
+            k = middle + 1
+        else:
+            last = middle
     h = motion[k, 1] - motion[k, 0]
     s = (t - motion[k, 0]) / h
     return (
@@ -64,15 +73,49 @@ def position(motion, t):
 
 
 @serial
-def remember_boundary(u, w, vx, vy, boundary):
+def n_edge_nodes(rows, columns):
+    """Nodes at the edges of a grid of ``rows`` by ``columns`` nodes."""
+    return 2 * (rows + columns) - 4
+
+
+@serial
+def edge_node(n, rows, columns):
+    """Edge of the ``n``-th edge node, its place along it, and its row and column in the grid."""
+    if n < rows:
+        return LEFT, n, n, 0
+    i = n - rows + 1
+    if i < columns:
+        return BOTTOM, i, 0, i
+    i -= columns - 1
+    if i < columns:
+        return TOP, i, rows - 1, i
+    j = i - columns + 1
+    return RIGHT, j, j, columns - 1
+
+
+@serial
+def _remember(old, k, j, i, a):
+    old[0, k], old[1, k], old[2, k], old[3, k] = a.u[j, i], a.w[j, i], a.vx[j, i], a.vy[j, i]
+
+
+@serial
+def remember_node(n, a, boundary):
+    """Keep what the edges need of the state of their ``n``-th node before a step; corners for both their edges."""
+    rows, columns = a.u.shape
+    j, i = edge_node(n, rows, columns)[2:]
+    if i == 0:
+        _remember(boundary.old[LEFT], j, j, i, a)
+    if j == 0:
+        _remember(boundary.old[BOTTOM], i, j, i, a)
+    if j == rows - 1:
+        _remember(boundary.old[TOP], i, j, i, a)
+
+
+@serial
+def remember_boundary(a, boundary):
     """Keep what the edges need of the state before a step."""
-    rows, columns = u.shape
-    for field, values in enumerate((u, w, vx, vy)):
-        for j in range(rows):
-            boundary.old[0, field, j] = values[j, 0]
-        for i in range(columns):
-            boundary.old[1, field, i] = values[0, i]
-            boundary.old[2, field, i] = values[rows - 1, i]
+    for n in range(n_edge_nodes(a.u.shape[0], a.u.shape[1])):
+        remember_node(n, a, boundary)
 
 
 @serial
@@ -123,78 +166,90 @@ def _prescribe(a, j, i, edge, k, U, across, W, dt, boundary, totals):
 
 
 @serial
-def _keep_straight(dt, a, boundary):
-    """Let the left end move across only in proportion to height: the constraint that does no work."""
-    momentum, inertia = 0.0, 0.0
-    for j in range(a.w.shape[0]):
-        if a.inverse_mass[j, 0] > 0.0:
-            momentum += a.Y[j, 0] * a.vy[j, 0] / a.inverse_mass[j, 0]
-            inertia += a.Y[j, 0] ** 2 / a.inverse_mass[j, 0]
-    for j in range(a.w.shape[0]):
-        a.vy[j, 0] = momentum / inertia * a.Y[j, 0]
-        a.w[j, 0] = boundary.old[0, 1, j] + dt * a.vy[j, 0]
+def _stop_across(a, j, i, totals):
+    """Symmetry or a frictionless guide: node (j, i) keeps its height."""
+    if a.inverse_mass[j, i] > 0.0:
+        totals[IMPULSE_ACROSS] -= a.vy[j, i] / a.inverse_mass[j, i]
+    a.w[j, i] = 0.0
+    a.vy[j, i] = 0.0
 
 
 @serial
-def _left(t, dt, a, boundary, totals):
-    rows, columns = a.u.shape
-    U, U_old = position(boundary.motion, t), position(boundary.motion, t - dt)
-    impulse = 0.0
-    if boundary.left == LEFT_STRUCK:
-        for j in range(rows):
-            impulse += _push(a, j, 0, 0, j, U, U_old, 1.0, boundary.friction, dt, boundary, totals)
-        for i in range(1, columns):
-            if boundary.top == FREE:
-                impulse += _push(a, rows - 1, i, 2, i, U, U_old, 1.0, boundary.friction, dt, boundary, totals)
-            if boundary.bottom == FREE:
-                impulse += _push(a, 0, i, 1, i, U, U_old, 1.0, boundary.friction, dt, boundary, totals)
-    else:
-        across = boundary.left in (LEFT_HELD, LEFT_LINEAR)
-        W_top = position(boundary.motion_across, t) if boundary.left == LEFT_LINEAR else 0.0
-        half_height = a.Y[rows - 1, 0]
-        for j in range(rows):
-            W = W_top * a.Y[j, 0] / half_height
-            impulse += _prescribe(a, j, 0, 0, j, U, across, W, dt, boundary, totals)
-    if boundary.left == LEFT_STRAIGHT:
-        _keep_straight(dt, a, boundary)
-    totals[IMPULSE_LEFT] += impulse
-    totals[FORCE] = impulse / dt
-
-
-@serial
-def _stop_across(a, j, dt, totals):
-    """Symmetry or a frictionless guide: row j keeps its height."""
-    for i in range(a.w.shape[1]):
-        if a.inverse_mass[j, i] > 0.0:
+def _stop(a, j, i, right, totals):
+    """A node of the right edge keeps its place along x, and across if the edge is fixed."""
+    if a.inverse_mass[j, i] > 0.0:
+        totals[IMPULSE_RIGHT] -= a.vx[j, i] / a.inverse_mass[j, i]
+        if right == FIXED:
             totals[IMPULSE_ACROSS] -= a.vy[j, i] / a.inverse_mass[j, i]
+    a.u[j, i] = 0.0
+    a.vx[j, i] = 0.0
+    if right == FIXED:
         a.w[j, i] = 0.0
         a.vy[j, i] = 0.0
 
 
 @serial
-def _right(a, boundary, totals):
-    c = a.u.shape[1] - 1
-    for j in range(a.u.shape[0]):
-        if a.inverse_mass[j, c] > 0.0:
-            totals[IMPULSE_RIGHT] -= a.vx[j, c] / a.inverse_mass[j, c]
-            if boundary.right == FIXED:
-                totals[IMPULSE_ACROSS] -= a.vy[j, c] / a.inverse_mass[j, c]
-        a.u[j, c] = 0.0
-        a.vx[j, c] = 0.0
-        if boundary.right == FIXED:
-            a.w[j, c] = 0.0
-            a.vy[j, c] = 0.0
+def drive_position(t, dt, boundary):
+    """Where the plate or end is at time ``t`` and was ``dt`` before, and how far its top has moved across [m]."""
+    if boundary.left == LEFT_FREE:
+        return 0.0, 0.0, 0.0
+    across = position(boundary.motion_across, t) if boundary.left == LEFT_LINEAR else 0.0
+    return position(boundary.motion, t), position(boundary.motion, t - dt), across
 
 
 @serial
-def _wall(dt, a, boundary, totals):
+def _drive(a, j, i, edge, k, drive, dt, boundary, totals):
+    """What the left end does to a node of an edge, its own or one that may touch the plate."""
+    U, U_old, W_top = drive
+    if boundary.left == LEFT_STRUCK:
+        impulse = _push(a, j, i, edge, k, U, U_old, 1.0, boundary.friction, dt, boundary, totals)
+    elif edge == LEFT:
+        across = boundary.left == LEFT_HELD or boundary.left == LEFT_LINEAR
+        W = W_top * a.Y[j, 0] / a.Y[a.Y.shape[0] - 1, 0]
+        impulse = _prescribe(a, j, i, edge, k, U, across, W, dt, boundary, totals)
+    else:
+        return
+    totals[IMPULSE_LEFT] += impulse
+    totals[FORCE] += impulse / dt
+
+
+@serial
+def hold_node(n, drive, dt, a, boundary, totals):
+    """Make the ``n``-th edge node, moved by a free step ``dt`` [s], obey the conditions there.
+
+    Everything but the straight end (:func:`keep_straight`) concerns one node at a time; ``drive`` is that of
+    :func:`drive_position`. The order matters: guides, left end, wall, right edge.
+    """
     rows, columns = a.u.shape
-    L = boundary.length
-    for i in range(1, columns - 1):
-        if boundary.top == FREE:
-            totals[IMPULSE_RIGHT] += _push(a, rows - 1, i, 2, i, L, L, -1.0, 0.0, dt, boundary, totals)
-        if boundary.bottom == FREE:
-            totals[IMPULSE_RIGHT] += _push(a, 0, i, 1, i, L, L, -1.0, 0.0, dt, boundary, totals)
+    edge, k, j, i = edge_node(n, rows, columns)
+    if (j == 0 and boundary.bottom == ROLLER) or (j == rows - 1 and boundary.top == ROLLER):
+        _stop_across(a, j, i, totals)
+    surface = (edge == BOTTOM and boundary.bottom == FREE) or (edge == TOP and boundary.top == FREE)
+    if boundary.left != LEFT_FREE and (edge == LEFT or surface):
+        _drive(a, j, i, edge, k, drive, dt, boundary, totals)
+    if boundary.wall and surface and i < columns - 1:
+        L = boundary.length
+        totals[IMPULSE_RIGHT] += _push(a, j, i, edge, k, L, L, -1.0, 0.0, dt, boundary, totals)
+    if boundary.right != FREE and i == columns - 1:
+        _stop(a, j, i, boundary.right, totals)
+
+
+@serial
+def straight_rate(a):
+    """Rate of the left end's motion across per height [1/s], from the momentum across that its nodes have together."""
+    momentum, inertia = 0.0, 0.0
+    for j in range(a.w.shape[0]):
+        if a.inverse_mass[j, 0] > 0.0:
+            momentum += a.Y[j, 0] * a.vy[j, 0] / a.inverse_mass[j, 0]
+            inertia += a.Y[j, 0] ** 2 / a.inverse_mass[j, 0]
+    return momentum / inertia
+
+
+@serial
+def keep_straight(j, rate, dt, a, boundary):
+    """Let the left end move across only in proportion to height: the constraint that does no work."""
+    a.vy[j, 0] = rate * a.Y[j, 0]
+    a.w[j, 0] = boundary.old[LEFT, 1, j] + dt * a.vy[j, 0]
 
 
 @serial
@@ -212,13 +267,11 @@ def apply_boundary(t, dt, a, boundary, totals):
     """Make the state at time ``t`` [s], reached by a free step ``dt``, obey the conditions at the edges."""
     if boundary.bins.shape[1] > 0:
         hold_apart(dt, a, boundary, totals)
-    if boundary.bottom == ROLLER:
-        _stop_across(a, 0, dt, totals)
-    if boundary.top == ROLLER:
-        _stop_across(a, a.u.shape[0] - 1, dt, totals)
-    if boundary.left != LEFT_FREE:
-        _left(t, dt, a, boundary, totals)
-    if boundary.wall:
-        _wall(dt, a, boundary, totals)
-    if boundary.right != FREE:
-        _right(a, boundary, totals)
+    drive = drive_position(t, dt, boundary)
+    totals[FORCE] = 0.0
+    for n in range(n_edge_nodes(a.u.shape[0], a.u.shape[1])):
+        hold_node(n, drive, dt, a, boundary, totals)
+    if boundary.left == LEFT_STRAIGHT:
+        rate = straight_rate(a)
+        for j in range(a.u.shape[0]):
+            keep_straight(j, rate, dt, a, boundary)

@@ -32,6 +32,7 @@ class Record:
 
 def write_checkpoint(path: Path, simulation: Simulation, record: Record, case_text: str) -> None:
     """Write everything that :func:`read_checkpoint` needs; the file appears whole or not at all."""
+    simulation.backend.fetch_all()
     partial = path.with_name(path.name + ".part")
     with h5py.File(partial, "w") as file:
         file.attrs.update(version=__version__, case=case_text)

@@ -113,11 +113,12 @@ def _hourglass_overstress(q, qx, qy, memory, terms, factors, j, i, back):
 
 
 @vector
-def _survey_run(j, run, dt, a, memory, terms, out):
-    """Contribution of each element of a run of row ``j``, in ``out`` [N_COLUMNS, n_columns]: sums are taken afterwards, so that
-    this loop vectorises."""
+def survey_run(j, start, stop, layer, dt, a, memory, terms, out):
+    """Contribution of elements ``start`` to ``stop`` of row ``j``, all of one layer, in ``out`` [N_COLUMNS, n_columns].
+
+    Sums are taken afterwards, so that this loop vectorises.
+    """
     r = uintp(j)
-    start, stop, layer = a.runs[run]
     factors, shares = a.factors[layer], a.terms[layer]
     mu, K, linear, quadratic, hourglass = a.moduli[layer]
     n, last = n_points(memory, terms), bulk_place(memory, terms)
@@ -192,7 +193,8 @@ def survey(dt, a, memory, terms, work, out):
         row = work[part]
         for j in range(a.shares[part], a.shares[part + 1]):
             for k in range(a.first_run[j], a.first_run[j + 1]):
-                _survey_run(j, k, dt, a, memory, terms, row)
+                start, stop, layer = a.runs[k]
+                survey_run(j, start, stop, layer, dt, a, memory, terms, row)
             for column in range(HOURGLASS_AMPLITUDE):
                 out[j, column] = _sum(row[column])
             out[j, HOURGLASS_AMPLITUDE] = row[HOURGLASS_AMPLITUDE].max()

@@ -18,9 +18,9 @@ STRAIN, RATE, NOMINAL, XX, YY, XY, VOLUME = range(7)
 
 
 @vector
-def _fields_run(j, run, a, memory, terms, out):
+def fields_run(j, start, stop, layer, a, memory, terms, out):
+    """Fields of elements ``start`` to ``stop`` of row ``j``, all of one layer."""
     r = uintp(j)
-    start, stop, layer = a.runs[run]
     factors = a.factors[layer]
     mu, K = a.moduli[layer, 0], a.moduli[layer, 1]
     n, last = n_points(memory, terms), bulk_place(memory, terms)
@@ -62,7 +62,8 @@ def element_fields(a, memory, terms, out):
     for part in prange(n_parts):
         for j in range(a.shares[part], a.shares[part + 1]):
             for k in range(a.first_run[j], a.first_run[j + 1]):
-                _fields_run(j, k, a, memory, terms, out)
+                start, stop, layer = a.runs[k]
+                fields_run(j, start, stop, layer, a, memory, terms, out)
 
 
 def to_nodes(columns: np.ndarray) -> np.ndarray:

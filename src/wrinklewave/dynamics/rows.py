@@ -118,10 +118,10 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
 
 
 @vector
-def node_row(j, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
-    """Move node row ``j`` by central differences, from the forces of the element rows below and above it."""
+def node_row(j, start, stop, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+    """Move nodes ``start`` to ``stop`` of row ``j`` by central differences, from the forces of the rows beside it."""
     r = uintp(j)
-    for i in range(uintp(u.shape[1])):
+    for i in range(uintp(start), uintp(stop)):
         k = i + ONE
         c = dt_velocity * inverse_mass[r, i]
         fx = (below[4, i] + below[6, k]) + (above[0, k] + above[2, i])

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wrinklewave.dynamics.backends import Backend, Device, Sample, backend_for
 from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, N_TOTALS, WORK
 from wrinklewave.dynamics.energy import (
     BULK_VISCOUS,
@@ -15,15 +15,9 @@ from wrinklewave.dynamics.energy import (
     HOURGLASS_AMPLITUDE,
     J_LEAST,
     J_MOST,
-    N_COLUMNS,
     SPRINGS,
     STORED,
-    kinetic_energy,
-    survey,
 )
-from wrinklewave.dynamics.fields import FIELDS, element_fields
-from wrinklewave.dynamics.stable_step import stable_steps
-from wrinklewave.dynamics.step import advance
 from wrinklewave.errors import RunError
 from wrinklewave.materials.neo_hookean import J_MAX, J_MIN
 
@@ -72,15 +66,17 @@ class Event:
 
 @dataclass(eq=False)
 class Simulation:
-    """A model that runs through ``events`` (increasing times [s], the first one 0).
+    """A model that runs through ``events`` (increasing times [s], the first one 0) on a ``device``.
 
-    Everything that a restart needs is in ``model.arrays``, ``model.memory`` and the fields below.
+    Everything that a restart needs is in ``model.arrays``, ``model.memory`` and the fields below; while the model is on
+    a GPU, displacements and velocities are brought to ``model.arrays`` at every event, the rest by ``backend.fetch_all``.
     """
 
     model: Model
     events: NDArray[np.float64]
     safety: float = 0.9
     history_interval: float = 2e-6
+    device: Device = "cpu"
     next_event: int = 0
     step: int = 0
     dt: float = 0.0
@@ -93,11 +89,7 @@ class Simulation:
     stepping_seconds: float = 0.0
 
     def __post_init__(self) -> None:
-        rows = self.model.mesh.shape[0]
-        self._steps = np.zeros(self.model.mesh.shape)
-        self._survey = np.zeros((rows, N_COLUMNS))
-        parts = self.model.arrays.shares.size - 1
-        self._row_work = np.zeros((parts, N_COLUMNS, self.model.mesh.shape[1]))
+        self.backend: Backend = backend_for(self.device, self.model)
 
     @property
     def time(self) -> float:
@@ -128,14 +120,13 @@ class Simulation:
         while self.next_event < self.events.size:
             if self.next_event > 0:
                 self._go(self.events[self.next_event - 1], self.events[self.next_event])
+                self.backend.fetch_nodes()
             self.next_event += 1
             yield Event(self.next_event - 1, self.time)
 
     def fields(self) -> NDArray[np.float64]:
         """Element fields now, shape [len(FIELDS), n_rows, n_columns], see :mod:`wrinklewave.dynamics.fields`."""
-        out = np.zeros((len(FIELDS), *self.model.mesh.shape))
-        element_fields(self.model.arrays, self.model.memory_rows, self.model.terms, out)
-        return out
+        return self.backend.fields()
 
     def stable_step(self) -> float:
         """Largest stable step of the present state [s].
@@ -143,9 +134,9 @@ class Simulation:
         Raises:
             RunError: as :meth:`run`.
         """
-        stable_steps(self.model.arrays, self.model.density, self._steps)
-        row, column = np.unravel_index(int(np.argmin(self._steps)), self._steps.shape)  # the first NaN, if any
-        dt = float(self._steps[row, column])
+        steps = self.backend.stable_steps()
+        row, column = np.unravel_index(int(np.argmin(steps)), steps.shape)  # the first NaN, if any
+        dt = float(steps[row, column])
         self.first_dt = self.first_dt or dt
         if not dt > SMALLEST_STEP * self.first_dt:
             raise self._failure(int(row), int(column), dt)
@@ -155,35 +146,28 @@ class Simulation:
         n = int(np.ceil((stop - start) / (self.safety * self.stable_step())))
         dt = float(stop - start) / n
         group = max(1, int(self.history_interval / dt))
-        for first in range(0, n, group):
-            count = min(group, n - first)
-            self._advance(count, float(start) + first * dt, dt)
-            self._record(float(start) + (first + count) * dt, dt)
+        done = 0
+        for sample in self.backend.march(n, group, float(start), self.dt, dt, self.totals):
+            done += sample.steps
+            self.step += sample.steps
+            self.stepping_seconds += sample.seconds
+            self.dt = dt
+            self._record(float(start) + done * dt, dt, sample)
 
-    def _advance(self, count: int, t: float, dt: float) -> None:
-        m = self.model
-        begin = time.perf_counter()
-        advance(count, t, self.dt, dt, m.arrays, m.memory_rows, m.terms, m.boundary, self.totals)
-        self.stepping_seconds += time.perf_counter() - begin
-        self.step += count
-        self.dt = dt
-
-    def _record(self, t: float, dt: float) -> None:
-        m, a = self.model, self.model.arrays
-        survey(dt, a, m.memory_rows, m.terms, self._row_work, self._survey)
-        s = self._survey.sum(axis=0)
+    def _record(self, t: float, dt: float, sample: Sample) -> None:
+        a, rows = self.model.arrays, sample.survey
+        s = rows.sum(axis=0)
         power, middle = s[[2, BULK_VISCOUS, HOURGLASS]], t - dt / 2
         self.work += 0.5 * (self.power + power) * (middle - self.power_time)
         self.power, self.power_time = power, middle
-        kinetic = kinetic_energy(a.inverse_mass, a.vx, a.vy)
-        spent = kinetic + s[STORED] + self.work.sum() + self.totals[CONTACT_LOSS] + self.totals[FRICTION_LOSS]
-        least, most = float(self._survey[:, J_LEAST].min()), float(self._survey[:, J_MOST].max())
+        spent = sample.kinetic + s[STORED] + self.work.sum() + self.totals[CONTACT_LOSS] + self.totals[FRICTION_LOSS]
+        least, most = float(rows[:, J_LEAST].min()), float(rows[:, J_MOST].max())
         self.history.append(
             (
                 t,
                 self.step,
                 dt,
-                kinetic,
+                sample.kinetic,
                 s[STORED],
                 s[SPRINGS],
                 *self.work,
@@ -191,17 +175,17 @@ class Simulation:
                 self.totals[FRICTION_LOSS],
                 self.totals[WORK],
                 spent - self.totals[WORK],
-                a.X[-1, 0] + a.u[-1, 0],
-                a.Y[-1, 0] + a.w[-1, 0],
+                a.X[-1, 0] + sample.corner[0],
+                a.Y[-1, 0] + sample.corner[1],
                 self.totals[FORCE],
-                float(self._survey[:, HOURGLASS_AMPLITUDE].max()),
+                float(rows[:, HOURGLASS_AMPLITUDE].max()),
                 least,
                 most,
             )
         )
         if not (least >= J_MIN and most <= J_MAX):
             self.stable_step()  # names an inverted element, if that is the cause
-            row = int(np.argmin(self._survey[:, J_LEAST])) if least < J_MIN else int(np.argmax(self._survey[:, J_MOST]))
+            row = int(np.argmin(rows[:, J_LEAST])) if least < J_MIN else int(np.argmax(rows[:, J_MOST]))
             raise RunError(
                 f"at t = {t * 1e3:.4f} ms (step {self.step}) the volume ratio in element row {row} is "
                 f"{least:.3g} to {most:.3g}, outside {J_MIN} to {J_MAX}\n"

@@ -50,9 +50,9 @@ def element_step(X, Y, u, w, vx, vy, mu_i, K_i, linear, quadratic, rho):
 
 
 @vector
-def _stable_step_run(j, run, a, density, out):
+def stable_step_run(j, start, stop, layer, a, density, out):
+    """Largest stable steps of elements ``start`` to ``stop`` of row ``j``, all of one layer."""
     r = uintp(j)
-    start, stop, layer = a.runs[run]
     mu_i, K_i = a.moduli[layer, 0], a.moduli[layer, 1]
     for m in range(a.terms.shape[1]):
         mu_i += a.terms[layer, m, 0]
@@ -71,4 +71,5 @@ def stable_steps(a, density, out):
     for part in prange(n_parts):
         for j in range(a.shares[part], a.shares[part + 1]):
             for k in range(a.first_run[j], a.first_run[j + 1]):
-                _stable_step_run(j, k, a, density, out)
+                start, stop, layer = a.runs[k]
+                stable_step_run(j, start, stop, layer, a, density, out)

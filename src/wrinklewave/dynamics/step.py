@@ -13,7 +13,7 @@ from numba import prange
 from numba.extending import overload
 
 from wrinklewave._jit import parallel, serial
-from wrinklewave.dynamics.boundary import Boundary, apply_boundary, remember_boundary
+from wrinklewave.dynamics.boundary import apply_boundary, remember_boundary
 from wrinklewave.dynamics.mean_dilatation_rows import mean_dilatation_row
 from wrinklewave.dynamics.points import ONE_POINT_COMPONENTS
 from wrinklewave.dynamics.rows import node_row, one_point_row
@@ -63,12 +63,18 @@ def update_factors(a, dt_last, dt):
 
 def element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     """Forces of part of a row of whichever element this memory belongs to; chosen when the kernel is compiled."""
-    raise NotImplementedError("for use in compiled code")
+    row = _row_of(len(memory), len(terms))
+    row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
+
+
+def _row_of(n_memory, n_terms):
+    return one_point_row if n_memory // n_terms in ONE_POINT_COMPONENTS else mean_dilatation_row
 
 
 @overload(element_row)
-def _choose_element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    row = one_point_row if memory.count // terms.count in ONE_POINT_COMPONENTS else mean_dilatation_row
+def choose_element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """What numba compiles in place of :func:`element_row`."""
+    row = _row_of(memory.count, terms.count)
 
     def call(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
         row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
@@ -94,7 +100,7 @@ def _share(part, a, memory, terms, dt_velocity, dt):
             element_row(j, start, stop, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, above)
         if j > first:
             below = forces[_slot(j - 1, first)]
-            node_row(j, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+            node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
 @serial
@@ -108,7 +114,7 @@ def _rows_between_shares(a, dt_velocity, dt):
         above = a.nothing
         if part < n_parts:
             above = a.forces[part, FIRST]
-        node_row(j, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+        node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
 @parallel
@@ -123,7 +129,7 @@ def advance(n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
         if n < 2:
             update_factors(a, dt_last if n == 0 else dt, dt)
         dt_velocity = 0.5 * ((dt_last if n == 0 else dt) + dt)
-        remember_boundary(a.u, a.w, a.vx, a.vy, boundary)
+        remember_boundary(a, boundary)
         if n_parts == 1:
             _share(0, a, memory, terms, dt_velocity, dt)
         else:

@@ -1,0 +1,71 @@
+"""Where a model is stepped: one interface to the processor and to a GPU."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from wrinklewave.dynamics.model import Model
+
+Device = Literal["cpu", "cuda"]
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Energies and the struck end's top corner after some steps.
+
+    Args:
+        steps: taken since the sample before.
+        seconds: of wall-clock time that they took.
+        survey: sums and extremes of each element row, shape [n_rows, N_COLUMNS], see
+            :mod:`wrinklewave.dynamics.energy`; the next sample may overwrite it.
+        kinetic: kinetic energy at mid-step [J/m].
+        corner: displacements u, w of the struck end's top corner [m].
+    """
+
+    steps: int
+    seconds: float
+    survey: NDArray
+    kinetic: float
+    corner: tuple[float, float]
+
+
+class Backend(Protocol):
+    """Steps a model that is at rest or comes from a checkpoint, whose state it takes when it is first used."""
+
+    def march(
+        self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray
+    ) -> Iterator[Sample]:
+        """Take ``n`` steps of ``dt`` [s] from time ``t``, and a sample after every ``group`` of them and at the end.
+
+        ``dt_last`` is the step that led to the present state (0 at the start). ``totals`` [N_TOTALS] are the work and
+        impulses at the boundary, brought up to date before every sample.
+        """
+
+    def stable_steps(self) -> NDArray:
+        """Largest stable step of each element [s], shape [n_rows, n_columns]."""
+
+    def fields(self) -> NDArray:
+        """Element fields, shape [len(FIELDS), n_rows, n_columns], see :mod:`wrinklewave.dynamics.fields`."""
+
+    def fetch_nodes(self) -> None:
+        """Bring displacements and velocities to ``model.arrays``."""
+
+    def fetch_all(self) -> None:
+        """Bring all that a checkpoint keeps to ``model.arrays`` and ``model.memory``."""
+
+
+def backend_for(device: Device, model: Model) -> Backend:
+    """The backend of a device, for one model."""
+    if device == "cuda":
+        from wrinklewave.dynamics.cuda.backend import Cuda
+
+        return Cuda(model)
+    from wrinklewave.dynamics.cpu import Cpu
+
+    return Cpu(model)

@@ -1,0 +1,66 @@
+"""The processor: the state lies where the model has it."""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from wrinklewave.dynamics.backends import Sample
+from wrinklewave.dynamics.energy import N_COLUMNS, kinetic_energy, survey
+from wrinklewave.dynamics.fields import FIELDS, element_fields
+from wrinklewave.dynamics.stable_step import stable_steps
+from wrinklewave.dynamics.step import advance
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from wrinklewave.dynamics.model import Model
+
+
+class Cpu:
+    """A :class:`~wrinklewave.dynamics.backends.Backend` on one or more threads; results do not depend on how many."""
+
+    def __init__(self, model: Model) -> None:
+        rows, columns = model.mesh.shape
+        parts = model.arrays.shares.size - 1
+        self._model = model
+        self._memory = model.memory_rows
+        self._steps = np.zeros((rows, columns))
+        self._survey = np.zeros((rows, N_COLUMNS))
+        self._work = np.zeros((parts, N_COLUMNS, columns))
+
+    def march(
+        self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
+    ) -> Iterator[Sample]:
+        """Step, and survey the state after every group of steps."""
+        m, a = self._model, self._model.arrays
+        for first in range(0, n, group):
+            count = min(group, n - first)
+            begin = time.perf_counter()
+            last = dt_last if first == 0 else dt
+            advance(count, t + first * dt, last, dt, a, self._memory, m.terms, m.boundary, totals)
+            seconds = time.perf_counter() - begin
+            survey(dt, a, self._memory, m.terms, self._work, self._survey)
+            kinetic = kinetic_energy(a.inverse_mass, a.vx, a.vy)
+            yield Sample(count, seconds, self._survey, kinetic, (a.u[-1, 0], a.w[-1, 0]))
+
+    def stable_steps(self) -> NDArray[np.float64]:
+        """Largest stable step of each element [s]."""
+        stable_steps(self._model.arrays, self._model.density, self._steps)
+        return self._steps
+
+    def fields(self) -> NDArray[np.float64]:
+        """Element fields."""
+        out = np.zeros((len(FIELDS), *self._model.mesh.shape))
+        element_fields(self._model.arrays, self._memory, self._model.terms, out)
+        return out
+
+    def fetch_nodes(self) -> None:
+        """Nothing to do: the state is where it should be."""
+
+    def fetch_all(self) -> None:
+        """Nothing to do: the state is where it should be."""

@@ -1,0 +1,202 @@
+"""The kernels. They share out elements, nodes, edge nodes and rows; the arithmetic is that of the processor's loops.
+
+``a`` are the :class:`~wrinklewave.dynamics.step.Arrays` on the device, with two differences: ``forces``
+[n_rows, 8, n_columns + 2] has a buffer for every row of elements, and ``layer`` [n_rows, n_columns] stands in for runs.
+All that names ``cuda`` is in this one module, as numba's simulator demands.
+"""
+
+from __future__ import annotations
+
+from numba import cuda
+
+from wrinklewave.dynamics.boundary import (
+    FORCE,
+    FREE,
+    LEFT_STRAIGHT,
+    drive_position,
+    hold_apart,
+    hold_node,
+    keep_straight,
+    n_edge_nodes,
+    remember_node,
+    straight_rate,
+)
+from wrinklewave.dynamics.energy import HOURGLASS_AMPLITUDE, J_LEAST, N_COLUMNS, survey_run
+from wrinklewave.dynamics.fields import fields_run
+from wrinklewave.dynamics.rows import node_row
+from wrinklewave.dynamics.stable_step import stable_step_run
+from wrinklewave.dynamics.step import element_row
+
+BLOCK = 256
+"""Threads per block on a device; kernels work with fewer, if a power of two."""
+KINETIC = N_COLUMNS
+N_SUMS = N_COLUMNS + 1
+"""Sums of a row: a survey's columns, then the kinetic energy of its nodes."""
+
+
+@cuda.jit(device=True)
+def _elements(first, a, factors, layer, memory, terms, boundary):
+    """Forces of all elements; and what the edges have to remember of the state before the step."""
+    rows, columns = layer.shape
+    for e in range(first, rows * columns, cuda.gridsize(1)):
+        j = e // columns
+        i = e - j * columns
+        n = layer[j, i]
+        b, moduli, forces = factors[n], a.moduli[n], a.forces[j]
+        element_row(j, i, i + 1, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, b, moduli, forces)
+    for n in range(first, n_edge_nodes(rows + 1, columns + 1), cuda.gridsize(1)):
+        remember_node(n, a, boundary)
+
+
+@cuda.jit(device=True)
+def _nodes(first, dt_velocity, dt, a):
+    """Move all nodes freely."""
+    rows, columns = a.u.shape
+    for p in range(first, rows * columns, cuda.gridsize(1)):
+        j = p // columns
+        i = p - j * columns
+        below = a.forces[j - 1] if j > 0 else a.nothing
+        above = a.forces[j] if j < rows - 1 else a.nothing
+        node_row(j, i, i + 1, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+
+
+@cuda.jit(device=True)
+def _overhangs(a, row):
+    """Whether this thread sees a surface that folds; only then can it touch itself."""
+    for i in range(cuda.threadIdx.x, a.u.shape[1] - 1, cuda.blockDim.x):
+        if a.X[row, i + 1] + a.u[row, i + 1] < a.X[row, i] + a.u[row, i]:
+            return 1
+    return 0
+
+
+@cuda.jit(device=True)
+def _edges(t, dt, a, boundary, totals):
+    """Conditions at the edges, by one block; ``totals`` [n_edge_nodes, N_TOTALS] are gathered node by node."""
+    thread, threads = cuda.threadIdx.x, cuda.blockDim.x
+    rows = a.u.shape[0]
+    if boundary.bins.shape[1] > 0:
+        folded = 0
+        if boundary.top == FREE:
+            folded += _overhangs(a, rows - 1)
+        if boundary.bottom == FREE:
+            folded += _overhangs(a, 0)
+        if cuda.syncthreads_or(folded) and thread == 0:
+            hold_apart(dt, a, boundary, totals[0])
+        cuda.syncthreads()
+    drive = drive_position(t, dt, boundary)
+    for n in range(thread, n_edge_nodes(rows, a.u.shape[1]), threads):
+        totals[n, FORCE] = 0.0
+        hold_node(n, drive, dt, a, boundary, totals[n])
+    if boundary.left == LEFT_STRAIGHT:
+        cuda.syncthreads()
+        rate = straight_rate(a)
+        cuda.syncthreads()
+        for j in range(thread, rows, threads):
+            keep_straight(j, rate, dt, a, boundary)
+
+
+@cuda.jit(device=True)
+def _combined(column, x, y):
+    """Two sums, or extremes, as one; NaN if either is."""
+    if column < HOURGLASS_AMPLITUDE or column == KINETIC or x != x or y != y:
+        return x + y
+    return min(x, y) if column == J_LEAST else max(x, y)
+
+
+@cuda.jit(device=True)
+def _total(column, value, shared):
+    """The block's values as one, in a fixed order; for thread 0."""
+    thread, half = cuda.threadIdx.x, cuda.blockDim.x // 2
+    shared[thread] = value
+    cuda.syncthreads()
+    while half > 0:
+        if thread < half:
+            shared[thread] = _combined(column, shared[thread], shared[thread + half])
+        cuda.syncthreads()
+        half //= 2
+    value = shared[0]
+    cuda.syncthreads()
+    return value
+
+
+@cuda.jit(device=True)
+def _kinetic(j, i, a):
+    if a.inverse_mass[j, i] <= 0.0:
+        return 0.0
+    return 0.5 * (a.vx[j, i] * a.vx[j, i] + a.vy[j, i] * a.vy[j, i]) / a.inverse_mass[j, i]
+
+
+@cuda.jit(device=True)
+def _sums(dt, a, layer, memory, terms, sums):
+    """Sums of each row by one block, in an order that the size of the grid does not change.
+
+    The contributions of the elements lie where their forces were: the next step computes those anew.
+    """
+    shared = cuda.shared.array(BLOCK, "float64")
+    thread, threads = cuda.threadIdx.x, cuda.blockDim.x
+    rows, columns = layer.shape
+    for j in range(cuda.blockIdx.x, rows + 1, cuda.gridDim.x):
+        value = 0.0
+        for i in range(thread, columns + 1, threads):
+            value += _kinetic(j, i, a)
+        sums[j, KINETIC] = _total(KINETIC, value, shared)
+        if j == rows:
+            continue
+        work = a.forces[j][:, 1:-1]
+        for i in range(thread, columns, threads):
+            survey_run(j, i, i + 1, layer[j, i], dt, a, memory, terms, work)
+        for column in range(N_COLUMNS):
+            value = 1e300 if column == J_LEAST else 0.0
+            for i in range(thread, columns, threads):
+                value = _combined(column, value, work[column, i])
+            sums[j, column] = _total(column, value, shared)
+
+
+@cuda.jit(cache=True)
+def march(n, group, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals, samples):
+    """Take ``n`` steps of ``dt`` from time ``t``, and a sample after every ``group`` of them and at the end.
+
+    ``first_factors`` are the Prony coefficients of the first step, which follows one of ``dt_last``. ``samples`` is a
+    tuple: sums [n_samples, n_rows + 1, N_SUMS], totals [n_samples, n_edge_nodes, N_TOTALS], corner [n_samples, 2].
+    """
+    sums, totals_then, corner = samples
+    grid = cuda.cg.this_grid()
+    first = cuda.grid(1)
+    for step in range(n):
+        dt_before = dt_last if step == 0 else dt
+        _elements(first, a, first_factors if step == 0 else a.factors, layer, memory, terms, boundary)
+        grid.sync()
+        _nodes(first, 0.5 * (dt_before + dt), dt, a)
+        grid.sync()
+        if cuda.blockIdx.x == 0:
+            _edges(t + (step + 1) * dt, dt, a, boundary, totals)
+        grid.sync()
+        if (step + 1) % group == 0 or step + 1 == n:
+            sample = step // group
+            _sums(dt, a, layer, memory, terms, sums[sample])
+            for m in range(first, totals.shape[0], cuda.gridsize(1)):
+                for k in range(totals.shape[1]):
+                    totals_then[sample, m, k] = totals[m, k]
+            if first == 0:
+                corner[sample, 0], corner[sample, 1] = a.u[-1, 0], a.w[-1, 0]
+            grid.sync()
+
+
+@cuda.jit(cache=True)
+def fields(a, layer, memory, terms, out):
+    """Element fields of the present state, ``out`` [len(FIELDS), n_rows, n_columns]."""
+    rows, columns = layer.shape
+    for e in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
+        j = e // columns
+        i = e - j * columns
+        fields_run(j, i, i + 1, layer[j, i], a, memory, terms, out)
+
+
+@cuda.jit(cache=True)
+def stable_steps(a, layer, density, out):
+    """Largest stable step of each element [s], ``out`` [n_rows, n_columns]."""
+    rows, columns = layer.shape
+    for e in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
+        j = e // columns
+        i = e - j * columns
+        stable_step_run(j, i, i + 1, layer[j, i], a, density, out)
