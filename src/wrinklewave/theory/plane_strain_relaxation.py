@@ -31,20 +31,22 @@ def plane_strain_relaxation(solid: Viscoelastic) -> RelaxingModulus:
     mu_inf, K_inf = solid.mu_inf, solid.K_inf
     long_term = 4 * mu_inf * (3 * K_inf + mu_inf) / (3 * K_inf + 4 * mu_inf)
     times, term = np.unique(solid.tau_k, return_inverse=True)  # terms of one time are one term
-    rates, n = 1.0 / times, times.size
+    rates: Array = 1.0 / times
     common = np.poly(-rates)  # prod (s + 1/tau_k), over which both moduli are polynomials of s
-    mu = _numerator(mu_inf, np.bincount(term, solid.mu_k, n), rates)
-    K = _numerator(K_inf, np.bincount(term, solid.K_k, n), rates)
+    mu, K = (
+        _numerator(long, np.array([share[term == k].sum() for k in range(times.size)]), rates)
+        for long, share in ((mu_inf, solid.mu_k), (K_inf, solid.K_k))
+    )
     numerator = np.polymul(4 * mu, np.polyadd(3 * K, mu))
     denominator = np.polymul(common, np.polyadd(3 * K, 4 * mu))
-    poles = np.roots(denominator).real
+    poles = np.asarray(np.roots(denominator).real, dtype=np.float64)
     residues = np.polyval(numerator, poles) / np.polyval(np.polyder(denominator), poles)
     return RelaxingModulus(long_term=long_term, shares=residues / poles, times=-1.0 / poles)
 
 
 def _numerator(long_term: float, shares: Array, rates: Array) -> Array:
     """Coefficients of (long_term + sum_k shares_k s/(s + rates_k)) prod (s + rates_k), highest power first."""
-    total = long_term * np.poly(-rates)
+    total = np.asarray(long_term * np.poly(-rates), dtype=np.float64)
     for k, share in enumerate(shares):
         total = np.polyadd(total, share * np.polymul([1.0, 0.0], np.poly(-np.delete(rates, k))))
     return total

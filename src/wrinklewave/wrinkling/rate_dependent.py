@@ -28,7 +28,7 @@ UNLOADING_RESERVE = 0.2
 LARGEST_INITIAL_SLOPE = 0.5
 STEPS_PER_TIME_SCALE = 4
 """The amplitudes then err by less than 0.1 % (the scheme is of second order)."""
-LEAST_STEPS, MOST_STEPS = 200, 4000
+LEAST_STEPS, MOST_STEPS = 200, 2000
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ which the block answers the film's force N:
 
     K (E' * w) = -dN/dX,    strain = strain without the film - dw/dX,    N = N(strain of the film, wrinkles included),
 
-K the stiffness of the block's surface (:mod:`wrinklewave.wrinkling.block_surface`), E' * the relaxing plane-strain
-modulus. The struck end keeps to its plate or leaves it, as far as the plate lets it. Inertia of w is left out.
+K the stiffness of the block's surface (:mod:`wrinklewave.wrinkling.block_surface`), stiffened by the mean strain as
+a half-space is, E' * the relaxing plane-strain modulus. The struck end keeps to its plate or leaves it, as far as the
+plate lets it. Inertia of w is left out.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from numpy.typing import ArrayLike
 
 from wrinklewave.errors import InputError, RunError
 from wrinklewave.materials.moduli import Viscoelastic
+from wrinklewave.theory.incremental import half_space_stiffness, prestressed_layer, stroh_matrix
 from wrinklewave.theory.plane_strain_relaxation import RelaxingModulus, plane_strain_relaxation
 from wrinklewave.wrinkling.block_surface import BlockSurface, block_surface
 from wrinklewave.wrinkling.rate_dependent import (
@@ -39,6 +41,7 @@ from wrinklewave.wrinkling.rate_dependent_march import (
     begin_step,
     compressive_force,
     end_step,
+    expected_film_strain,
     meet_film,
 )
 
@@ -46,9 +49,10 @@ CELLS = 96
 """Along the block, for the motion along the surface and for the wrinkles on it."""
 STRAIN_RESERVE = 0.1
 """By which the film may strain the surface further than it was without it."""
-TOLERANCE = 1e-6
+TOLERANCE = 1e-5
 """Of the surface's strain."""
 MOST_ITERATIONS = 40
+STIFFENING_STRAINS = np.linspace(-0.1, 0.4, 11)
 
 
 @dataclass(frozen=True)
@@ -116,6 +120,7 @@ def wrinkles_on_block(
     bearing = Bearing(
         surface=surface,
         modulus=plane_strain_relaxation(substrate),
+        stiffening=_stiffening(substrate),
         force_unit=substrate.mu_inf * film.thickness,
         film=(centres < block.film_end).astype(float),
         step=bilayer.step,
@@ -139,6 +144,7 @@ class Bearing:
     Args:
         surface: stiffness of the block's surface, per plane-strain modulus.
         modulus: the relaxing plane-strain modulus.
+        stiffening: factor on the stiffness at the strains ``STIFFENING_STRAINS``.
         force_unit: force per width [N/m] of a nominal stress of 1 in the film.
         film: 1 on the cells that carry the film, else 0, shape [n_cells].
         step: length of the time steps [s].
@@ -146,6 +152,7 @@ class Bearing:
 
     surface: BlockSurface
     modulus: RelaxingModulus
+    stiffening: Array
     force_unit: float
     film: Array
     step: float
@@ -175,6 +182,17 @@ class SurfaceState:
     w: Array
     moved: Array
     relaxing: Array
+
+
+def _stiffening(substrate: Viscoelastic) -> Array:
+    """How much stiffer a half-space is along its surface at ``STIFFENING_STRAINS`` than unstrained."""
+
+    def along(strain: float) -> float:
+        layer = prestressed_layer(substrate, 1.0 - strain, unit=substrate.mu_inf)
+        Z = half_space_stiffness(stroh_matrix(layer, 1.0))
+        return float(Z[0, 0] - Z[0, 1] * Z[1, 0] / Z[1, 1])
+
+    return np.array([along(strain) for strain in STIFFENING_STRAINS]) / along(1e-9)
 
 
 def _march(strain: Array, gaps: Array, bilayer: Bilayer, bearing: Bearing) -> tuple[Array, Array]:
@@ -211,13 +229,15 @@ def block_step(
         w = trial.w.copy()
         if held:
             w[bearing.surface.end] = -gap
-        slope = wrinkles.slope
+        reached = strain + bearing.surface.shortening @ w
+        guess, slope = expected_film_strain(wrinkles, reached), wrinkles.slope
         for _ in range(MOST_ITERATIONS):
-            met = meet_film(begun, strain + bearing.surface.shortening @ w, slope, bilayer)
-            slope = met.slope
+            met = meet_film(begun, reached, guess, slope, bilayer)
             change = _correction(w, met, surface, held, bilayer, bearing)
-            w = w + change
-            if np.abs(bearing.surface.shortening @ change).max() < TOLERANCE:
+            strained = bearing.surface.shortening @ change
+            w, reached = w + change, reached + strained
+            guess, slope = met.film_strain + strained / met.slope, met.slope
+            if np.abs(strained).max() < TOLERANCE:
                 return w, met
         raise RunError("film and surface do not come into equilibrium along the block")
 
@@ -234,7 +254,8 @@ def _correction(
     w: Array, met: Meeting, surface: SurfaceState, held: bool, bilayer: Bilayer, bearing: Bearing
 ) -> Array:
     """Newton's step of the moving nodes towards equilibrium of film and surface [m]."""
-    K, B = bearing.surface.stiffness, bearing.surface.shortening
+    stiffening = np.interp(met.strain.mean(), STIFFENING_STRAINS, bearing.stiffening)
+    K, B = stiffening * bearing.surface.stiffness, bearing.surface.shortening
     acting = bearing.modulus.long_term + float(bearing.add.sum())
     remembered = bearing.keep @ surface.relaxing - bearing.add.sum() * surface.w
     force, rise = compressive_force(met, bilayer)

@@ -37,6 +37,7 @@ class FilmResponse:
         F: 00, 01, 11, shape [3, M, P].
         f: 0, 1, shape [2, M, P].
         transverse_stretch: of the flat film, shape [M, P].
+        axial_force: of the relaxed flat film, P_11 = l1 S_11, and its rise with the strain, shape [P] each.
         top: how (U, V) of the underside and the initial wrinkle move the top, shape [3, M, P].
         F_of_stress, f_of_stress: dF/dS_11 and df/dS_11, shapes [3, M, P] and [2, M, P].
         F_of_terms: dF/d(Prony term), shape [n_terms, 3, M, P].
@@ -45,6 +46,8 @@ class FilmResponse:
     F: Array
     f: Array
     transverse_stretch: Array
+    axial_force: Array
+    axial_force_rise: Array
     top: Array
     F_of_stress: Array
     f_of_stress: Array
@@ -57,7 +60,7 @@ class FilmTable:
 
     Args:
         first_strain: of the table.
-        columns: in the order of ``FilmResponse``, shape [14 + 3 n_terms, M, n_strains]; the
+        columns: in the order of ``FilmResponse``, shape [15 + 3 n_terms, M, n_strains]; the
             last of them, from dF/dS_11 on, only of films that relax.
         mass: dF/d(rho s^2), components 00, 01, 11, shape [3, M, 1].
     """
@@ -75,9 +78,20 @@ class FilmTable:
         place = (strain - self.first_strain) / STRAIN_SPACING
         row = np.clip(place.astype(np.intp), 0, self.columns.shape[-1] - 2)
         lower = self.columns.take(row, axis=-1)
-        value = lower + (place - row) * (self.columns.take(row + 1, axis=-1) - lower)
-        terms = value[14:].reshape(-1, 3, *value.shape[1:])  # none, like the derivatives, of an elastic film
-        return FilmResponse(value[:3], value[3:5], value[5], value[6:9], value[9:12], value[12:14], terms)
+        rise = self.columns.take(row + 1, axis=-1) - lower
+        value = lower + (place - row) * rise
+        terms = value[15:].reshape(-1, 3, *value.shape[1:])  # none, like the derivatives, of an elastic film
+        return FilmResponse(
+            F=value[:3],
+            f=value[3:5],
+            transverse_stretch=value[5],
+            axial_force=value[6, 0],
+            axial_force_rise=rise[6, 0] / STRAIN_SPACING,
+            top=value[7:10],
+            F_of_stress=value[10:13],
+            f_of_stress=value[13:15],
+            F_of_terms=terms,
+        )
 
 
 def film_table(
@@ -120,7 +134,7 @@ def film_table(
 
 
 def _response(layer: PrestressedLayer, k: float, thickness: float) -> Array:
-    """F, f, transverse stretch, t and t_i of one layer, shape [9]."""
+    """F, f, transverse stretch, axial force, t and t_i of one layer, shape [10]."""
     E = film_transfer(stroh_matrix(layer, k), k * thickness)
     compliance = np.linalg.inv(E[2:, 2:])
     F = compliance @ E[2:, :2]
@@ -128,7 +142,7 @@ def _response(layer: PrestressedLayer, k: float, thickness: float) -> Array:
     f = axial_force * (compliance[:, 0] - [1.0, 0.0])
     t = E[1, :2] - E[1, 2:] @ F
     t_i = -axial_force * (E[1, 2:] @ compliance[:, 0])
-    return np.array([F[0, 0], F[0, 1], F[1, 1], *f, layer.transverse_stretch, *t, t_i])
+    return np.array([F[0, 0], F[0, 1], F[1, 1], *f, layer.transverse_stretch, axial_force, *t, t_i])
 
 
 def _relaxing_response(

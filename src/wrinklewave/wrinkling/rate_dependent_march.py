@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinklewave.errors import RunError
-from wrinklewave.theory.biaxial import normal_stress, shape
 from wrinklewave.wrinkling.rate_dependent_film import FilmResponse, FilmTable
 from wrinklewave.wrinkling.rate_dependent_flat import FlatState, SteppedModuli, flat_at_rest, flat_step
 from wrinklewave.wrinkling.rate_dependent_substrate import (
@@ -30,8 +29,6 @@ Array = NDArray[np.float64]
 TOLERANCE = 1e-8
 """Of the film's strain."""
 MOST_ITERATIONS = 100
-STRAIN_DIFFERENCE = 1e-4
-"""Of the central difference of the film's force."""
 
 
 @dataclass(frozen=True)
@@ -135,7 +132,13 @@ def wrinkle_step(before: WrinkleState, strain: Array, bilayer: Bilayer) -> Wrink
         RunError: if the film's strain leaves the table or cannot be found.
     """
     begun = begin_step(before, strain, bilayer)
-    return end_step(begun, meet_film(begun, strain, before.slope, bilayer), bilayer)
+    met = meet_film(begun, strain, expected_film_strain(before, strain), before.slope, bilayer)
+    return end_step(begun, met, bilayer)
+
+
+def expected_film_strain(before: WrinkleState, strain: Array) -> Array:
+    """Strain of the film at the axial ``strain`` [P] if the wrinkles take up what they did in the last step."""
+    return before.film_strain + strain - before.strain - before.taken_up
 
 
 def begin_step(before: WrinkleState, strain: Array, bilayer: Bilayer) -> BegunStep:
@@ -148,7 +151,7 @@ def begin_step(before: WrinkleState, strain: Array, bilayer: Bilayer) -> BegunSt
     return BegunStep(before, strain, flat, below)
 
 
-def meet_film(begun: BegunStep, strain: Array, slope: Array, bilayer: Bilayer) -> Meeting:
+def meet_film(begun: BegunStep, strain: Array, guess: Array, slope: Array, bilayer: Bilayer) -> Meeting:
     """Let film and substrate meet where the wrinkles leave nothing of the axial ``strain`` [P] over.
 
     The film's strain of no excess is the only root of a function that rises with a slope of 1 or more. Secant steps
@@ -157,16 +160,15 @@ def meet_film(begun: BegunStep, strain: Array, slope: Array, bilayer: Bilayer) -
     Args:
         begun: step.
         strain: at its end; it may differ a little from that for which the step was begun.
-        slope: of the excess, as a first guess, shape [P].
+        guess, slope: of the film's strain, and of the rise of the excess, to start from, shape [P].
         bilayer: of the step.
 
     Raises:
         RunError: if the film's strain leaves the table or cannot be found.
     """
-    before = begun.before
     low = np.full_like(strain, bilayer.table.first_strain)
     high = strain + bilayer.shortened
-    x, last = np.minimum(before.film_strain + strain - before.strain - before.taken_up, high), None
+    x, last = np.minimum(guess, high), None
     for _ in range(MOST_ITERATIONS):
         met = _meet(x, begun, strain, slope, bilayer)
         value = met.excess
@@ -224,17 +226,11 @@ def compressive_force(met: Meeting, bilayer: Bilayer) -> tuple[Array, Array]:
 
     Both in the unit of the moduli; the rise is that of a film whose wrinkles take up their share of the strain.
     """
-    moduli, stretch = bilayer.film, 1.0 - met.film_strain
-    l2 = met.film.transverse_stretch[0]
-    stress = met.flat_film.axial_stress if moduli.relaxes else _relaxed_stress(met.film_strain, l2, moduli)
-    d = STRAIN_DIFFERENCE
-    above, below = (
-        (1.0 - film_strain)
-        * _relaxed_stress(film_strain, bilayer.table.at(film_strain).transverse_stretch[0], moduli)
-        for film_strain in (met.film_strain + d, met.film_strain - d)
-    )
-    rise = (below - above) / (2.0 * d) * moduli.mu_acting / moduli.mu
-    return -stretch * stress, rise / np.maximum(met.slope, 1.0)
+    force, rise = -met.film.axial_force, -met.film.axial_force_rise
+    if bilayer.film.relaxes:
+        force = -(1.0 - met.film_strain) * met.flat_film.axial_stress
+        rise = rise * (bilayer.film.mu_acting / bilayer.film.mu)
+    return force, rise / np.maximum(met.slope, 1.0)
 
 
 def shortening(slope: Array) -> Array:
@@ -278,19 +274,12 @@ def _film_memory(
 ) -> tuple[Array, Array]:
     """F of a film that relaxes, as it acts over the step, and the force that earlier steps left on its underside."""
     moduli = bilayer.film
-    relaxed = _relaxed_stress(film_strain, film.transverse_stretch[0], moduli)
-    excess = flat_film.axial_stress - relaxed
+    excess = flat_film.axial_stress - film.axial_force / (1.0 - film_strain)
     strained, left = before.film_force
     F = film.F + excess * film.F_of_stress + np.tensordot(moduli.add, film.F_of_terms, axes=1)
     force = excess * film.f_of_stress * bilayer.imperfection
     force += np.tensordot(moduli.keep, left, axes=1) - np.tensordot(moduli.add, strained, axes=1)
     return F, force
-
-
-def _relaxed_stress(film_strain: Array, transverse_stretch: Array, moduli: SteppedModuli) -> Array:
-    """S_11 of a flat film that has relaxed, shape [P]."""
-    l1, l2 = 1.0 - film_strain, transverse_stretch
-    return normal_stress(l1, l2, tuple(moduli.mu * np.array(shape(l1, l2))), moduli.K * (l1 * l2 - 1.0))[0]
 
 
 def _film_force(met: Meeting, before: tuple[Array, Array], moduli: SteppedModuli) -> tuple[Array, Array]:
