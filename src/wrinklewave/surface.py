@@ -50,7 +50,7 @@ DIMENSIONS = {
     "stress_xx": ("time", "point"),
     "amplitude": ("time", "point"),
 }
-UNITS = {name: "m" for name in DIMENSIONS} | {"strain_xx": "1", "strain_rate_xx": "1/s", "stress_xx": "Pa"}
+UNITS = dict.fromkeys(DIMENSIONS, "m") | {"strain_xx": "1", "strain_rate_xx": "1/s", "stress_xx": "Pa"}
 REQUIRED = ("y", "u_y", "x_boundary", "x_p", "y_p")
 KINDS = ("simulation", "measurement")
 
@@ -93,21 +93,26 @@ def check(surface: xr.Dataset, *, source: object = "surface motion") -> xr.Datas
     """
     for name in (*REQUIRED, "X"):
         if name not in surface.variables:
-            raise InputError(f"no variable {name!r}", file=source, expected=f"a surface motion with {', '.join(REQUIRED)}")
-    for name in surface.data_vars:
-        if name not in DIMENSIONS:
-            continue
-        if surface[name].dims != DIMENSIONS[str(name)]:
-            raise InputError(f"has dimensions {surface[name].dims}", file=source, key=str(name), expected=str(DIMENSIONS[str(name)]))
-        if surface[name].attrs.get("units") != UNITS[str(name)]:
-            raise InputError(f"has units {surface[name].attrs.get('units')!r}", file=source, key=str(name), expected=UNITS[str(name)])
+            raise InputError(
+                f"no variable {name!r}", file=source, expected=f"a surface motion with {', '.join(REQUIRED)}"
+            )
+    for name in (known for known in DIMENSIONS if known in surface):
+        dims, units = surface[name].dims, surface[name].attrs.get("units")
+        if dims != DIMENSIONS[name]:
+            raise InputError(f"has dimensions {dims}", file=source, key=name, expected=str(DIMENSIONS[name]))
+        if units != UNITS[name]:
+            raise InputError(f"has units {units!r}", file=source, key=name, expected=UNITS[name])
     for axis in ("time", "x"):
         if surface[axis].size > 1 and not (np.diff(surface[axis].values) > 0).all():
             raise InputError("does not increase", file=source, key=axis, expected="increasing values")
     if surface.attrs.get("kind") not in KINDS:
-        raise InputError(f"kind is {surface.attrs.get('kind')!r}", file=source, key="kind", expected=" or ".join(KINDS))
+        raise InputError(
+            f"kind is {surface.attrs.get('kind')!r}", file=source, key="kind", expected=" or ".join(KINDS)
+        )
     if not float(surface.attrs.get("length", 0)) > 0:
-        raise InputError("no undeformed length", file=source, key="length", expected="a positive number of metres")
+        raise InputError(
+            "no undeformed length", file=source, key="length", expected="a positive number of metres"
+        )
     return surface
 
 
@@ -130,11 +135,15 @@ def read(path: str | Path) -> xr.Dataset:
 
     file = Path(path) / "surface.nc" if Path(path).is_dir() else Path(path)
     if not file.exists():
-        raise InputError("no such file", file=file, cure="give a surface.nc, or the folder of a run that holds one")
+        raise InputError(
+            "no such file", file=file, cure="give a surface.nc, or the folder of a run that holds one"
+        )
     try:
         surface = xr.load_dataset(file, engine="h5netcdf")
     except (OSError, ValueError) as error:
-        raise InputError(f"cannot be read ({error})", file=file, expected="a NetCDF-4 surface motion") from error
+        raise InputError(
+            f"cannot be read ({error})", file=file, expected="a NetCDF-4 surface motion"
+        ) from error
     return check(surface, source=file)
 
 

@@ -21,7 +21,7 @@ SMALL = (
     "mesh.elements=[24, 8]",
     "solver.end_time=0.5 ms",
     "output.field_interval=0.1 ms",
-    "analysis.times=[\"0.2 ms\", \"0.4 ms\"]",
+    'analysis.times=["0.2 ms", "0.4 ms"]',
 )
 
 
@@ -56,7 +56,14 @@ def test_output_times_end_at_the_end():
 
 def test_run_leaves_its_files(run):
     names = {path.name for path in run.folder.iterdir()}
-    assert names == {"case.toml", "surface.nc", "fields.vtkhdf", "history.csv", "summary.json"}
+    assert names == {
+        "case.toml",
+        "surface.nc",
+        "fields.vtkhdf",
+        "history.csv",
+        "boundary.csv",
+        "summary.json",
+    }
 
 
 def test_surface_on_disk_is_that_of_the_run(run):
@@ -75,7 +82,11 @@ def test_summary_names_units_and_versions(run):
     assert summary["outcome"] == "finished"
     assert summary["steps"] == run.history["step"][-1]
     assert 0 <= summary["energy_imbalance_max"] < 1e-2  # coarse in space and time
-    assert {"wavefront_speed_m_per_s", "element_updates_per_s", "hourglass_energy_share_max"} <= summary.keys()
+    assert {
+        "wavefront_speed_m_per_s",
+        "element_updates_per_s",
+        "hourglass_energy_share_max",
+    } <= summary.keys()
     assert summary["versions"]["wrinklewave"]
 
 
@@ -97,7 +108,9 @@ def test_paraview_reads_the_fields(run):
     reader.Update()
     grid = reader.GetOutput()
     assert grid.GetNumberOfCells() == run.mesh.n_elements
-    assert {grid.GetCellData().GetArrayName(k) for k in range(grid.GetCellData().GetNumberOfArrays())} >= set(FIELDS)
+    assert {grid.GetCellData().GetArrayName(k) for k in range(grid.GetCellData().GetNumberOfArrays())} >= set(
+        FIELDS
+    )
     displacement = vtk_to_numpy(grid.GetPointData().GetArray("displacement"))
     top = displacement.reshape(*run.mesh.X.shape, 3)[-1, :, 0]
     assert top == pytest.approx(run.surface.x_p.values[-1] - run.mesh.X[-1], abs=1e-8)

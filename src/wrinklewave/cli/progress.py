@@ -24,11 +24,18 @@ def simulation_progress(title: str) -> Iterator[Callable[[Progress], None]]:
     """Show the progress of a simulation: time, step, rate, energy error, time left."""
     out = console()
     if not out.is_terminal:
-        yield _at_most_every(LOG_INTERVAL, lambda state: print(f"{title}: {describe(state)}", file=sys.stderr, flush=True))
+        yield _at_most_every(
+            LOG_INTERVAL, lambda state: print(f"{title}: {describe(state)}", file=sys.stderr, flush=True)
+        )
         return
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn
 
-    columns = (TextColumn("{task.description}"), BarColumn(20), TaskProgressColumn(), TextColumn("{task.fields[state]}"))
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(20),
+        TaskProgressColumn(),
+        TextColumn("{task.fields[state]}"),
+    )
     with Progress(*columns, console=out) as bar:
         task = bar.add_task(title, total=None, state="compiling kernels, if they are new (once, 10 to 20 s)")
         yield _at_most_every(BAR_INTERVAL, lambda state: _update(bar, task, state))

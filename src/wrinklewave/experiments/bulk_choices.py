@@ -34,7 +34,7 @@ def other_bulk_choices(
     Raises:
         RunError: as :func:`simulate`.
     """
-    found = {run.case.substrate.bulk_response: run.summary}
+    found: dict[str, dict[str, Any]] = {run.case.substrate.bulk_response: run.summary}
     for choice in BULK_CHOICES:
         if choice in found:
             continue

@@ -41,7 +41,7 @@ class SurfaceRecorder:
         y = a.Y[substrate[0] : substrate[-1] + 2, 0]
         weights = depth_weights(y, float(y[-1]), min(self.depth, float(y[-1] - y[0])))
         averages = (to_nodes(weights @ fields[k][substrate]) for k in (STRAIN, RATE, NOMINAL))
-        self.frames.append((np.float64(simulation.time), a.X[-1] + a.u[-1], a.Y[-1] + a.w[-1], *averages))
+        self.frames.append((np.array(simulation.time), a.X[-1] + a.u[-1], a.Y[-1] + a.w[-1], *averages))
 
     def to_record(self) -> Record:
         """The frames as stacked arrays, for a checkpoint or a dataset."""

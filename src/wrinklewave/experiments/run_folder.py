@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,6 +15,7 @@ from wrinklewave.experiments.boundary_history import boundary_columns
 from wrinklewave.experiments.vtkhdf import write_vtkhdf
 
 if TYPE_CHECKING:
+    import numpy as np
     from numpy.typing import NDArray
 
     from wrinklewave.config import Case
@@ -98,7 +100,7 @@ def write_json(path: Path, content: Any) -> None:
     write_text(path, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 
 
-def write_history(path: Path, history: dict[str, NDArray[np.float64]]) -> None:
+def write_history(path: Path, history: Mapping[str, NDArray[np.floating[Any]]]) -> None:
     """Write a table of columns as CSV, with all digits."""
     partial = path.with_name(path.name + ".part")
     with partial.open("w", newline="") as stream:

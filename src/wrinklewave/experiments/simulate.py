@@ -121,18 +121,21 @@ def simulate(
     case = _resolved(case, overrides)
     threads = _use_threads(threads)
     folder = RunFolder.prepare(Path(out), case, resume=resume, overwrite=overwrite) if out else None
+    place = folder.path if folder else None
     simulation, recorder, store = _start(case, threads, folder, resume)
     begin = time.perf_counter()
     try:
         outcome = _run(case, simulation, recorder, store, folder, progress)
     except RunError as error:
-        run = Run(case, Outcome.FAILED, _history(simulation), store, simulation.model.mesh, folder=folder and folder.path)
-        run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin) | {"message": str(error)}
+        run = Run(case, Outcome.FAILED, _history(simulation), store, simulation.model.mesh, folder=place)
+        run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin) | {
+            "message": str(error)
+        }
         if folder:
             folder.write_unfinished(run)
             raise RunError(f"{error}\n  {folder.describe_checkpoint()}") from error
         raise
-    run = Run(case, outcome, _history(simulation), store, simulation.model.mesh, folder=folder and folder.path)
+    run = Run(case, outcome, _history(simulation), store, simulation.model.mesh, folder=place)
     if outcome is Outcome.FINISHED:
         run.surface = simulated_surface(case, simulation.model.mesh.X[-1], recorder.to_record())
         run.analysis = analyse(run.surface, case.analysis)
@@ -155,7 +158,9 @@ def _use_threads(threads: int | None) -> int:
     available = min(processor().usable, numba.config.NUMBA_NUM_THREADS)
     if threads is not None and not 1 <= threads <= available:
         raise InputError(
-            f"{threads} threads", key="threads", expected=f"1 to {available}, the cores that this process may use"
+            f"{threads} threads",
+            key="threads",
+            expected=f"1 to {available}, the cores that this process may use",
         )
     threads = threads or available
     numba.set_num_threads(threads)
@@ -171,7 +176,10 @@ def _start(
     case: Case, threads: int, folder: RunFolder | None, resume: bool
 ) -> tuple[Simulation, SurfaceRecorder, FieldStore]:
     end = case.solver.end_time
-    surface, fields = output_times(case.output.surface_interval, end), output_times(case.output.field_interval, end)
+    surface, fields = (
+        output_times(case.output.surface_interval, end),
+        output_times(case.output.field_interval, end),
+    )
     events = np.unique(np.round(np.concatenate([surface, fields]), 12))
     simulation = Simulation(
         build_model(case, threads=threads),
@@ -222,7 +230,9 @@ def _run(
 def _progress(simulation: Simulation, start: float, seconds: float) -> Progress:
     end, now = float(simulation.events[-1]), simulation.time
     left = seconds * (end - now) / (now - start) if now > start else float("nan")
-    return Progress(now, end, simulation.step, simulation.updates_per_second, simulation.imbalance, seconds, left)
+    return Progress(
+        now, end, simulation.step, simulation.updates_per_second, simulation.imbalance, seconds, left
+    )
 
 
 def _history(simulation: Simulation) -> dict[str, NDArray[np.float64]]:
@@ -242,13 +252,18 @@ def run_summary(run: Run, simulation: Simulation, threads: int, seconds: float) 
     if run.analysis is not None:
         summary |= run.analysis.summary
     rows, columns = simulation.model.mesh.shape
-    return summary | energy_scalars(run.history) | material_scalars(run.case) | {
-        "elements": rows * columns,
-        "steps": simulation.step,
-        "simulated_time_s": simulation.time,
-        "threads": threads,
-        "element_updates_per_s": simulation.updates_per_second,
-        "stepping_time_s": simulation.stepping_seconds,
-        "wall_time_s": seconds,
-        "versions": versions(),
-    }
+    return (
+        summary
+        | energy_scalars(run.history)
+        | material_scalars(run.case)
+        | {
+            "elements": rows * columns,
+            "steps": simulation.step,
+            "simulated_time_s": simulation.time,
+            "threads": threads,
+            "element_updates_per_s": simulation.updates_per_second,
+            "stepping_time_s": simulation.stepping_seconds,
+            "wall_time_s": seconds,
+            "versions": versions(),
+        }
+    )

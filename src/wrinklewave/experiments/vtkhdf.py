@@ -20,7 +20,13 @@ if TYPE_CHECKING:
     from wrinklewave.mesh.block import GridMesh
 
 QUAD = 9
-UNITS = {"displacement": "m", "velocity": "m/s", "strain_xx": "1", "strain_rate_xx": "1/s", "volume_ratio": "1"}
+UNITS = {
+    "displacement": "m",
+    "velocity": "m/s",
+    "strain_xx": "1",
+    "strain_rate_xx": "1/s",
+    "volume_ratio": "1",
+}
 
 
 def write_vtkhdf(path: Path, mesh: GridMesh, frames: FieldStore) -> None:

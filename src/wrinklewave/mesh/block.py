@@ -43,7 +43,7 @@ class GridMesh:
 
 
 def graded(start: float, stop: float, n: int, ratio: float = 1.0) -> NDArray[np.float64]:
-    """``n + 1`` points from ``start`` to ``stop`` whose intervals grow geometrically; the last is ``ratio`` times the first."""
+    """``n + 1`` points from ``start`` to ``stop``: geometric intervals, the last ``ratio`` times the first."""
     if n == 1 or ratio == 1.0:
         return np.linspace(start, stop, n + 1)
     intervals = ratio ** (np.arange(n) / (n - 1))

@@ -20,5 +20,9 @@ def restart(folder: RunDir, threads: Threads = None, all_bulk: AllBulk = False) 
 
     case_file = folder / "case.toml"
     if not case_file.exists():
-        raise InputError("holds no run", file=folder, expected="the folder of an earlier run, with its case.toml")
-    run_and_present(load_case(case_file), folder, threads=threads, resume=True, overwrite=False, all_bulk=all_bulk)
+        raise InputError(
+            "holds no run", file=folder, expected="the folder of an earlier run, with its case.toml"
+        )
+    run_and_present(
+        load_case(case_file), folder, threads=threads, resume=True, overwrite=False, all_bulk=all_bulk
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -26,13 +26,23 @@ HEADLINE = (
 )
 
 Out = Annotated[
-    Path | None, typer.Option("--out", metavar="DIR", help="Folder for the results; default runs/NAME-OF-THE-CASE-FILE.")
+    Path | None,
+    typer.Option("--out", metavar="DIR", help="Folder for the results; default runs/NAME-OF-THE-CASE-FILE."),
 ]
-Threads = Annotated[int | None, typer.Option("--threads", metavar="N", help="Default: all cores. Results do not depend on it.")]
-Resume = Annotated[bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR, if there is one.")]
+Threads = Annotated[
+    int | None,
+    typer.Option("--threads", metavar="N", help="Default: all cores. Results do not depend on it."),
+]
+Resume = Annotated[
+    bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR, if there is one.")
+]
 Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an earlier run in DIR.")]
 AllBulk = Annotated[
-    bool, typer.Option("--all-bulk", help="Also run the other two choices of bulk response, for the comparison with the paper.")
+    bool,
+    typer.Option(
+        "--all-bulk",
+        help="Also run the other two choices of bulk response, for the comparison with the paper.",
+    ),
 ]
 
 
@@ -67,11 +77,13 @@ def run_and_present(
 
     out = console()
     with simulation_progress(case.name) as progress:
-        run = run_case(case, out=folder, threads=threads, resume=resume, overwrite=overwrite, progress=progress)
+        run = run_case(
+            case, out=folder, threads=threads, resume=resume, overwrite=overwrite, progress=progress
+        )
     if run.outcome is not Outcome.FINISHED:
         out.print(f"{run.outcome.value}: wrinklewave restart {folder}")
         raise typer.Exit(130)
-    summaries = {case.substrate.bulk_response: run.summary}
+    summaries: dict[str, dict[str, Any]] = {case.substrate.bulk_response: run.summary}
     if all_bulk:
         with simulation_progress(f"{case.name}, other bulk responses") as progress:
             summaries = other_bulk_choices(
