@@ -15,9 +15,9 @@ import numpy as np
 
 from wrinklewave._jit import serial
 
-RETURNED = 0.1
+RETURNED = 0.01
 """Part of the overlap that is given back in one step."""
-DEEPEST = 1.0
+DEEPEST = 0.5
 """Overlaps beyond this fraction of a segment's length are no contact, but a place seen through the body."""
 EMPTY = -1
 
