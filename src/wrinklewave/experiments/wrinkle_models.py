@@ -1,7 +1,8 @@
 """The wrinkling models of a case behind one interface: from moving surface nodes to the surface that is seen.
 
 "none" adds nothing; "quasi-static" is Eq. 1 on the depth-averaged strain; "rate-dependent" takes the strain of the
-surface, which is what strains the film; "resolved" has its wrinkles in the motion of the nodes already.
+surface, which is what strains the film, less what the film holds back; "resolved" has its wrinkles in the motion of
+the nodes already.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from wrinklewave.config.imperfections import RandomImperfection, SinusoidalImperfection
+from wrinklewave.dynamics.boundary import position
+from wrinklewave.dynamics.drives import striker
 from wrinklewave.errors import RunError
 from wrinklewave.experiments.resolved_surface import resolved_wrinkles, smooth_displacement
 from wrinklewave.laboratory_frame import Array
@@ -124,36 +127,48 @@ def _rate_dependent(case: Case, nodes: SurfaceNodes) -> Array:
             "beyond the rate-dependent model; they take the amplitude of the nearest node within its range",
             stacklevel=2,
         )
-    amplitude = _amplitude_of_strain(case, nodes.time, nodes.X[within], strain[:, within])
+    amplitude = _amplitude_of_strain(case, nodes.time, nodes.X[within], strain[:, within], _gap(case, nodes))
     nearest = np.abs(nodes.X[:, None] - nodes.X[within]).argmin(axis=1)
     return amplitude[:, nearest]
 
 
-def _amplitude_of_strain(case: Case, time: Array, X: Array, strain: Array) -> Array:
-    from wrinklewave.wrinkling.rate_dependent import FilmLayer, competing_wrinkles, wrinkle_amplitude
+def _amplitude_of_strain(case: Case, time: Array, X: Array, strain: Array, gap: Array) -> Array:
+    from wrinklewave.wrinkling.rate_dependent import FilmLayer
+    from wrinklewave.wrinkling.rate_dependent_block import Block, wrinkles_on_block
 
-    film, substrate = case.film, substrate_moduli(case.substrate)
+    film, block = case.film, case.block
     assert film is not None  # checked with the case, as is the imperfection
-    assert film.imperfection is not None
-    layer = FilmLayer(film.thickness, film_material(film, case.substrate))
-    if isinstance(film.imperfection, RandomImperfection):
-        shortest, longest = film.imperfection.wavelengths
-        return competing_wrinkles(
-            time,
-            strain,
-            film=layer,
-            substrate=substrate,
-            wavelengths=1.0 / np.linspace(1 / longest, 1 / shortest, RANDOM_WAVELENGTHS),
-            imperfection=film.imperfection.amplitude / np.sqrt(RANDOM_WAVELENGTHS),
-        ).amplitude
-    return wrinkle_amplitude(
+    wavelengths, imperfection = _seeds(case, X)
+    return wrinkles_on_block(
         time,
+        X,
         strain,
-        film=layer,
-        substrate=substrate,
-        wavelength=model_wavelength(case),
-        imperfection=_local_imperfection(case, X),
-    )
+        block=Block(length=block.length, depth=block.height / 2, film_end=block.length - film.end_gap),
+        film=FilmLayer(film.thickness, film_material(film, case.substrate)),
+        substrate=substrate_moduli(case.substrate),
+        wavelengths=wavelengths,
+        imperfection=imperfection,
+        gap=gap,
+    ).wrinkles.amplitude
+
+
+def _gap(case: Case, nodes: SurfaceNodes) -> Array:
+    """Distance of the struck end from the plate [m], shape [n_times]; no other drive lets the end fly free."""
+    if case.drive.kind != "striker":
+        return np.zeros_like(nodes.time)
+    plate = np.array([position(striker(case.drive), t) for t in nodes.time])
+    return np.maximum(nodes.x[:, 0] - plate, 0.0)
+
+
+def _seeds(case: Case, X: Array) -> tuple[Array, Array]:
+    """Wavelengths [m] of the model's wrinkles, and the imperfection's amplitude [m] at each point and wavelength."""
+    assert case.film is not None
+    imperfection = case.film.imperfection
+    if isinstance(imperfection, RandomImperfection):
+        shortest, longest = imperfection.wavelengths
+        wavelengths = 1.0 / np.linspace(1 / longest, 1 / shortest, RANDOM_WAVELENGTHS)
+        return wavelengths, np.full(wavelengths.shape, imperfection.amplitude / np.sqrt(RANDOM_WAVELENGTHS))
+    return np.array([model_wavelength(case)]), _local_imperfection(case, X)[:, np.newaxis]
 
 
 def _local_imperfection(case: Case, X: Array) -> Array:
