@@ -97,7 +97,7 @@ def critical_strain(
     def determinant(strain: float) -> float:
         return float(np.linalg.det(surface_stiffness(film, substrate, strain, wavenumber, depth=depth)))
 
-    below = STRAIN_STEP / 10
+    below = 0.0
     while below < LARGEST_STRAIN:
         above = below + STRAIN_STEP
         if determinant(above) < 0:
