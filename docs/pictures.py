@@ -7,7 +7,6 @@ from pathlib import Path
 PICTURES = {
     "displacement": "fig_2c_displacement",
     "wrinkles": "fig_4b_wrinkles",
-    "strain_over_depth": "fig_s2_strain_over_depth",
     "energy_balance": "energy_balance",
 }
 
