@@ -18,7 +18,10 @@ from wrinklewave.config.fields import (
 )
 
 Speed = Annotated[PositiveVelocity, Field(description="speed towards the held end")]
-RiseTime = Annotated[NotNegativeTime, Field(description="time in which the speed is reached; a striker also loses it in this time")]
+RiseTime = Annotated[
+    NotNegativeTime,
+    Field(description="time in which the speed is reached; a striker also loses it in this time"),
+]
 StopDistance = Annotated[PositiveLength, Field(description="travel at which the stoppers halt the plate")]
 
 

@@ -19,6 +19,38 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wrinklewave.dynamics.model import Model
+    from wrinklewave.dynamics.step import Arrays
+
+
+class Pace:
+    """Whether to step on all threads or on one, whichever is faster at the time.
+
+    Threads wait for each other at every step, so they are slow when another process takes their cores. Results do not
+    depend on their number, so it may change from one group of steps to the next. The slower choice is tried again
+    every :data:`RETRY` groups.
+    """
+
+    RETRY = 40
+    MEMORY = 0.8
+
+    def __init__(self, choices: list[Arrays]) -> None:
+        self._choices = choices
+        self._seconds = [0.0] * len(choices)  # per step, smoothed; 0 before the first try
+        self._tries = 0
+        self._current = 0
+
+    def choose(self) -> Arrays:
+        """The arrays, shared out to the number of threads that the next group should have."""
+        self._tries += 1
+        fastest = int(np.argmin(self._seconds))  # one that was never tried is the fastest
+        slower = (fastest + 1) % len(self._choices)
+        self._current = slower if self._tries % self.RETRY == 0 else fastest
+        return self._choices[self._current]
+
+    def note(self, seconds: float) -> None:
+        """Take down what a step of the last group took."""
+        old = self._seconds[self._current]
+        self._seconds[self._current] = self.MEMORY * old + (1 - self.MEMORY) * seconds if old else seconds
 
 
 class Cpu:
@@ -32,6 +64,8 @@ class Cpu:
         self._steps = np.zeros((rows, columns))
         self._survey = np.zeros((rows, N_COLUMNS))
         self._work = np.zeros((parts, N_COLUMNS, columns))
+        alone = model.arrays._replace(shares=np.array([0, rows]))
+        self._pace = Pace([model.arrays, alone] if parts > 1 else [model.arrays])
 
     def march(
         self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
@@ -40,10 +74,12 @@ class Cpu:
         m, a = self._model, self._model.arrays
         for first in range(0, n, group):
             count = min(group, n - first)
-            begin = time.perf_counter()
             last = dt_last if first == 0 else dt
-            advance(count, t + first * dt, last, dt, a, self._memory, m.terms, m.boundary, totals)
+            shared = self._pace.choose()
+            begin = time.perf_counter()
+            advance(count, t + first * dt, last, dt, shared, self._memory, m.terms, m.boundary, totals)
             seconds = time.perf_counter() - begin
+            self._pace.note(seconds / count)
             survey(dt, a, self._memory, m.terms, self._work, self._survey)
             kinetic = kinetic_energy(a.inverse_mass, a.vx, a.vy)
             yield Sample(count, seconds, self._survey, kinetic, (a.u[-1, 0], a.w[-1, 0]))

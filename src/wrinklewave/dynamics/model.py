@@ -10,6 +10,7 @@ import numpy as np
 
 from wrinklewave.config.history import read_history
 from wrinklewave.dynamics import drives
+from wrinklewave.dynamics.barrier import LINE
 from wrinklewave.dynamics.boundary import (
     FIXED,
     FREE,
@@ -182,6 +183,7 @@ def assemble(
         shares=np.linspace(0, rows, parts + 1).astype(np.int64),
         forces=np.zeros((parts, 3, 8, columns + 2)),
         nothing=np.zeros((8, columns + 2)),
+        meetings=np.zeros(parts * LINE, dtype=np.int64),
     )
     memory = np.zeros((n_terms * components, rows, columns))
     return Model(mesh, materials, arrays, memory, (0.0,) * n_terms, boundary, density)

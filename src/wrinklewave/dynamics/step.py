@@ -13,6 +13,7 @@ from numba import prange
 from numba.extending import overload
 
 from wrinklewave._jit import parallel, serial
+from wrinklewave.dynamics.barrier import wait_for_all
 from wrinklewave.dynamics.boundary import apply_boundary, remember_boundary
 from wrinklewave.dynamics.mean_dilatation_rows import mean_dilatation_row
 from wrinklewave.dynamics.points import ONE_POINT_COMPONENTS
@@ -26,7 +27,8 @@ class Arrays(NamedTuple):
     """All that the stepping kernels read and write; see :mod:`wrinklewave.dynamics.rows` for shapes and units.
 
     ``forces`` [n_parts, 3, 8, n_columns + 2] are the row buffers of each thread: its first row, and two in turn;
-    ``nothing`` [8, n_columns + 2] is zero: the forces of the row that is not there, below the mesh and above it.
+    ``nothing`` [8, n_columns + 2] is zero: the forces of the row that is not there, below the mesh and above it;
+    ``meetings`` [n_parts * LINE] counts the meetings of each thread, see :mod:`wrinklewave.dynamics.barrier`.
     """
 
     X: np.ndarray
@@ -44,6 +46,7 @@ class Arrays(NamedTuple):
     shares: np.ndarray  # first element row of each thread, and the number of rows, [n_parts + 1]
     forces: np.ndarray
     nothing: np.ndarray
+    meetings: np.ndarray
 
 
 @serial
@@ -117,23 +120,41 @@ def _rows_between_shares(a, dt_velocity, dt):
         node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
+@serial
+def _before_step(n, dt_last, dt, a, boundary):
+    if n < 2:
+        update_factors(a, dt_last if n == 0 else dt, dt)
+    remember_boundary(a, boundary)
+
+
+@serial
+def _after_shares(n, t, dt_velocity, dt, a, boundary, totals):
+    _rows_between_shares(a, dt_velocity, dt)
+    apply_boundary(t + (n + 1) * dt, dt, a, boundary, totals)
+
+
+@serial
+def _march(part, n_parts, n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
+    """Take all steps of one share, in step with the other shares; the first also does what concerns all."""
+    for n in range(n_steps):
+        dt_velocity = 0.5 * ((dt_last if n == 0 else dt) + dt)
+        if part == 0:
+            _before_step(n, dt_last, dt, a, boundary)
+        wait_for_all(a.meetings, part, n_parts, 2 * n + 1)
+        _share(part, a, memory, terms, dt_velocity, dt)
+        wait_for_all(a.meetings, part, n_parts, 2 * n + 2)
+        if part == 0:
+            _after_shares(n, t, dt_velocity, dt, a, boundary, totals)
+
+
 @parallel
 def advance(n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
     """Take ``n_steps`` steps of ``dt`` [s] from time ``t`` = that of the positions, in place.
 
     ``dt_last`` is the length of the step that led to the present state (0 at the start). ``totals`` gathers work and
-    impulses at the boundary, see :mod:`wrinklewave.dynamics.boundary`.
+    impulses at the boundary, see :mod:`wrinklewave.dynamics.boundary`. There must be a thread for each share.
     """
     n_parts = a.shares.size - 1
-    for n in range(n_steps):
-        if n < 2:
-            update_factors(a, dt_last if n == 0 else dt, dt)
-        dt_velocity = 0.5 * ((dt_last if n == 0 else dt) + dt)
-        remember_boundary(a, boundary)
-        if n_parts == 1:
-            _share(0, a, memory, terms, dt_velocity, dt)
-        else:
-            for part in prange(n_parts):
-                _share(part, a, memory, terms, dt_velocity, dt)
-        _rows_between_shares(a, dt_velocity, dt)
-        apply_boundary(t + (n + 1) * dt, dt, a, boundary, totals)
+    a.meetings[:] = 0
+    for part in prange(n_parts):
+        _march(part, n_parts, n_steps, t, dt_last, dt, a, memory, terms, boundary, totals)
