@@ -4,8 +4,8 @@
 
 J̄ is the ratio of an element's areas. The mean-dilatation element integrates the first term at 2 x 2 Gauss points, the
 one-point element at its centre, and adds the hourglass energy k |q|²/2 with q = sum_a h_a (x_a - F X_a) and
-k = factor mu A (7/72) sum_a |grad N_a|². Everything works with complex displacements, so that derivatives by the complex
-step, Im E(u + i h d)/h, are exact to rounding.
+k = factor mu A (7/72) sum_a |grad N_a|². Everything works with complex displacements, so that derivatives by the
+complex step, Im E(u + i h d)/h, are exact to rounding.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import spsolve
 
 from wrinklewave.mesh.block import GridMesh
 
@@ -102,9 +104,8 @@ class ElasticBlock:
         q = np.einsum("ea,eai->ei", mode, u.reshape(2, -1).T[self.nodes])
         return 0.5 * np.sum(k[:, None] * q**2)
 
-    def gradient(self, u: Array) -> Array:
-        """Internal forces dE/du [N/m], of the shape of ``u``."""
-        U = u.reshape(2, -1).T[self.nodes]
+    def element_forces(self, U: Array) -> Array:
+        """Forces on the corners of each element [N/m], of the shape of their displacements, [n_elements, 4, 2]."""
         dN, dA = self.gradients
         F = np.eye(2) + np.einsum("eai,geak->geik", U, dN)
         J = F[..., 0, 0] * F[..., 1, 1] - F[..., 0, 1] * F[..., 1, 0]
@@ -114,24 +115,32 @@ class ElasticBlock:
         third = (np.sum(F * F, axis=(2, 3)) + 1) / (3 * J)
         P = self.mu * (J ** (-2 / 3) * dA)[..., None, None] * (F - third[..., None, None] * cofactor)
         f = np.einsum("geik,geak->eai", P, dN)
-        f += (self.K * (_area(self.corners + U) / self.areas - 1))[:, None, None] * _area_gradient(
-            self.corners + U
-        )
+        pressure = self.K * (_area(self.corners + U) / self.areas - 1)
+        f += pressure[:, None, None] * _area_gradient(self.corners + U)
         if self.element == "one-point":
             mode, k = self.hourglass_modes
             f += np.einsum("e,ea,eb,ebi->eai", k, mode, mode, U)
-        out = np.zeros((self.mesh.X.size, 2), dtype=u.dtype)
-        np.add.at(out, self.nodes, f)
+        return f
+
+    def gradient(self, u: Array) -> Array:
+        """Internal forces dE/du [N/m], of the shape of ``u``."""
+        out = np.zeros((self.mesh.X.size, 2))
+        np.add.at(out, self.nodes, self.element_forces(u.reshape(2, -1).T[self.nodes]))
         return out.T.reshape(u.shape)
 
-    def stiffness(self, u: Array, free: Array) -> Array:
-        """d²E/du² [N/m²] for the degrees of freedom ``free`` (flat indices), by complex steps."""
-        K = np.empty((free.size, free.size))
-        for column, place in enumerate(free):
-            shifted = u.astype(complex)
-            shifted.flat[place] += 1j * COMPLEX_STEP
-            K[:, column] = self.gradient(shifted).ravel()[free].imag / COMPLEX_STEP
-        return K
+    def stiffness(self, u: Array) -> csr_array:
+        """d²E/du² [N/m²] of all degrees of freedom, by complex steps of each corner of all elements at once."""
+        U = u.reshape(2, -1).T[self.nodes].astype(complex)
+        columns = []
+        for a in range(4):
+            for i in range(2):
+                shifted = U.copy()
+                shifted[:, a, i] += 1j * COMPLEX_STEP
+                columns.append(self.element_forces(shifted).imag / COMPLEX_STEP)
+        values = np.stack(columns, axis=-1).reshape(-1, 8, 8)
+        place = (self.nodes[:, :, None] + self.mesh.X.size * np.arange(2)).reshape(-1, 8)
+        rows, columns_of = np.broadcast_arrays(place[:, :, None], place[:, None, :])
+        return csr_array((values.ravel(), (rows.ravel(), columns_of.ravel())), shape=(u.size, u.size))
 
     def equilibrium(self, u: Array, held: Array) -> Array:
         """Displacements of least energy, from the guess ``u``; those where ``held`` is true stay as they are."""
@@ -142,7 +151,7 @@ class ElasticBlock:
             residual = self.gradient(u).ravel()[free]
             if np.abs(residual).max() < 1e-11 * scale:
                 return u
-            u.flat[free] -= np.linalg.solve(self.stiffness(u, free), residual)
+            u.flat[free] -= spsolve(self.stiffness(u)[free][:, free], residual)
         raise AssertionError("Newton's method does not converge: take smaller load steps")
 
 
