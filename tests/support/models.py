@@ -77,7 +77,7 @@ def build(
 def distorted(
     columns: int, rows: int, *, size: float = 1e-3, seed: int = 0, amount: float = 0.25
 ) -> GridMesh:
-    """A block of ``columns`` by ``rows`` squares whose interior nodes are displaced at random by up to ``amount`` sizes."""
+    """A block of squares whose interior nodes are displaced at random by up to ``amount`` of their size."""
     mesh = block(length=columns * size, bottom=0.0, top=rows * size, elements=(columns, rows))
     shift = np.random.default_rng(seed).uniform(-amount * size, amount * size, (2, *mesh.X.shape))
     shift[:, [0, -1], :] = 0.0

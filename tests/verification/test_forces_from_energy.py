@@ -40,7 +40,7 @@ def rough(seed: int, amount: float = 0.08) -> Array:
 
 
 def solver_energy(mesh: GridMesh, u: Array, element: str) -> float:
-    """Elastic energy that a simulation reports [J/m], at rest; without the hourglass energy, which it reports as work."""
+    """Elastic energy that a simulation reports [J/m], at rest; the hourglass energy is work to it."""
     model = build(mesh, elastic(), element)
     model.arrays.u[:], model.arrays.w[:] = u
     return float(history(run(model, np.array([0.0, 1e-15])))["elastic_J_per_m"][0])

@@ -1,4 +1,7 @@
-"""Histories of the plate or of the struck end, as piecewise cubics [n_segments, 6]: t0, t1 [s], U0, U1 [m], V0, V1 [m/s]."""
+"""Histories of the plate or of the struck end, as piecewise cubics.
+
+Each is an array [n_segments, 6]: t0, t1 [s], U0, U1 [m], V0, V1 [m/s].
+"""
 
 from __future__ import annotations
 

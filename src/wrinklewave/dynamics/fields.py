@@ -73,6 +73,9 @@ def to_nodes(columns: np.ndarray) -> np.ndarray:
 
 
 def depth_weights(mesh_y: np.ndarray, top: float, depth: float) -> np.ndarray:
-    """Share of each element row in the mean over ``depth`` below ``top`` [m], shape [n_rows]; rows cut by it count in part."""
+    """Share of each element row in the mean over ``depth`` below ``top`` [m], shape [n_rows].
+
+    Rows that the depth cuts count in part.
+    """
     inside = np.clip(mesh_y, top - depth, top)
     return np.diff(inside) / depth

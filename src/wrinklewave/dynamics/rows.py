@@ -37,7 +37,9 @@ ONE = uintp(1)
 
 @vector
 def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of elements ``start`` to ``stop`` of row ``j`` of one-point quadrilaterals; ``memory`` is brought to the next step.
+    """Forces of elements ``start`` to ``stop`` of row ``j`` of one-point quadrilaterals.
+
+    ``memory`` is brought to the next step.
 
     ``moduli``: long-term shear and bulk modulus [Pa], linear and quadratic bulk viscosity, hourglass factor.
     """

@@ -40,7 +40,7 @@ def _place(a, row, i):
 
 @serial
 def _sort_segments(a, row, left, width, bins):
-    """Chain the segments of each bin: ``bins`` [2, n] holds the first segment of a bin, and each segment's successor."""
+    """Chain the segments of each bin: ``bins`` [2, n] holds the first of a bin, and each one's successor."""
     bins[0, :] = EMPTY
     for k in range(a.X.shape[1] - 1):
         middle = 0.5 * (_place(a, row, k)[0] + _place(a, row, k + 1)[0])

@@ -68,8 +68,9 @@ class Event:
 class Simulation:
     """A model that runs through ``events`` (increasing times [s], the first one 0) on a ``device``.
 
-    Everything that a restart needs is in ``model.arrays``, ``model.memory`` and the fields below; while the model is on
-    a GPU, displacements and velocities are brought to ``model.arrays`` at every event, the rest by ``backend.fetch_all``.
+    Everything that a restart needs is in ``model.arrays``, ``model.memory`` and the fields below; while the model is
+    on a GPU, displacements and velocities are brought to ``model.arrays`` at every event, the rest by
+    ``backend.fetch_all``.
     """
 
     model: Model
@@ -195,7 +196,9 @@ class Simulation:
     def _failure(self, row: int, column: int, dt: float) -> RunError:
         X, Y = self.model.arrays.X, self.model.arrays.Y
         place = f"X = {X[row, column] * 1e3:.3f} mm, Y = {Y[row, column] * 1e3:.3f} mm"
-        what = "the state is not finite" if np.isnan(dt) else "the stable step has collapsed: an element is inverted or nearly so"
+        what = "the stable step has collapsed: an element is inverted or nearly so"
+        if np.isnan(dt):
+            what = "the state is not finite"
         return RunError(
             f"{what} (element row {row}, column {column}, at {place}; t = {self.time * 1e3:.4f} ms, step {self.step}, "
             f"stable step {dt:.3g} s)\n"

@@ -18,7 +18,7 @@ J_MIN, J_MAX = 0.15, 2.75
 
 @scalar
 def inverse_cube_root(J):
-    """J^(-1/3) for J_MIN <= J <= J_MAX by Newton's method from a quadratic start: plain arithmetic, so it vectorises."""
+    """J^(-1/3) for J_MIN <= J <= J_MAX by Newton's method from a quadratic start: it vectorises."""
     y = 1.8257 - J * (1.0776 - 0.2537 * J)
     y *= (4.0 - J * y * y * y) * (1.0 / 3.0)
     y *= (4.0 - J * y * y * y) * (1.0 / 3.0)
@@ -43,7 +43,7 @@ def isochoric_shape(C11, C22, C12, Ji2):
 
 @scalar
 def second_piola_kirchhoff(A11, A22, A12, A33, C11, C22, C12, J, J23, Ji2, p):
-    """Components 11, 22, 12 of S = J p C⁻¹ + J^(-2/3) DEV[A] (Simo 1987, Comput. Methods Appl. Mech. Eng. 60, eq. 3.10).
+    """Components 11, 22, 12 of S = J p C⁻¹ + J^(-2/3) DEV[A] (Simo 1987, eq. 3.10).
 
     A is the isochoric stress after its history, p the mean stress, J23 = J^(-2/3), Ji2 = J⁻²;
     DEV[A] = A - (A : C / 3) C⁻¹.
