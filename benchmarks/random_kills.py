@@ -53,7 +53,9 @@ def trial(folder: Path, longest: float, generator: random.Random) -> int:
     """Run with kills until the end; returns their number."""
     kills = 0
     while True:
-        process = subprocess.Popen(command(folder, resume=kills > 0), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        process = subprocess.Popen(
+            command(folder, resume=kills > 0), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+        )
         if kills == 0 or generator.random() < 0.5:
             time.sleep(generator.uniform(0.0, longest))
             if process.poll() is None:
@@ -89,7 +91,9 @@ def main() -> None:
             if different or found.keys() != reference.keys():
                 raise SystemExit(f"trial {trials}: {', '.join(different) or 'other files'} differ")
             print(f"trial {trials}: {kills} kills so far, identical in {len(reference)} items", flush=True)
-        print(f"{kills} kills in {trials} runs of {longest:.1f} s: every result identical to the undisturbed run")
+        print(
+            f"{kills} kills in {trials} runs of {longest:.1f} s: every result identical to the undisturbed run"
+        )
 
 
 if __name__ == "__main__":

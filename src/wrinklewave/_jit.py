@@ -73,10 +73,15 @@ _NO_COUNTING: dict[str, Any] = _COMMON | {
 _FAST: dict[str, Any] = _NO_COUNTING | {"fastmath": True}
 
 
+def choose_cache(function: Callable[..., Any]) -> None:
+    """Make numba keep what it compiles of ``function`` where its room's kernels are."""
+    if "NUMBA_CACHE_DIR" not in os.environ:
+        numba.config.CACHE_DIR = _kernel_cache(function.__module__.split(".")[1])
+
+
 def _compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     def compile_lazily(function: Callable[..., Any]) -> Any:
-        if "NUMBA_CACHE_DIR" not in os.environ:
-            numba.config.CACHE_DIR = _kernel_cache(function.__module__.split(".")[1])
+        choose_cache(function)
         return numba.njit(**options)(function)
 
     return compile_lazily

@@ -58,7 +58,9 @@ def read_checkpoint(path: Path, simulation: Simulation, case_text: str) -> Recor
     try:
         file = h5py.File(path, "r")
     except OSError as error:
-        raise InputError(f"cannot be read ({error})", file=path, cure="start again without --resume") from error
+        raise InputError(
+            f"cannot be read ({error})", file=path, cure="start again without --resume"
+        ) from error
     with file:
         if file.attrs.get("version") != __version__ or file.attrs.get("case") != case_text:
             raise InputError(

@@ -110,9 +110,7 @@ def compression(distance: float, duration: float, unload: bool) -> NDArray[np.fl
     return np.vstack([ramp, [total, total + 1.0, end, end, 0.0, 0.0]])
 
 
-def measured(
-    t: NDArray[np.float64], U: NDArray[np.float64], smoothing: float
-) -> NDArray[np.float64]:
+def measured(t: NDArray[np.float64], U: NDArray[np.float64], smoothing: float) -> NDArray[np.float64]:
     """A measured history: smoothed by a Gaussian of standard deviation ``smoothing`` [s], then a monotone cubic.
 
     The history is taken to be at rest before its first and after its last sample; smoothing acts on samples

@@ -6,6 +6,7 @@ going back. Work over the step is the mean of both stresses times the strain inc
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -94,7 +95,9 @@ def _spring_energy(q, first, m, memory, terms, factors, j, i, share):
     M11, M12 = S11 * q.C11 + S12 * q.C12, S11 * q.C12 + S12 * q.C22
     M21, M22 = S12 * q.C11 + S22 * q.C12, S12 * q.C12 + S22 * q.C22
     S33 = H33 - third
-    return q.J23 * q.J23 * (M11 * M11 + 2.0 * M12 * M21 + M22 * M22 + S33 * S33) * 0.25 * inverse_or_zero(share)
+    return (
+        q.J23 * q.J23 * (M11 * M11 + 2.0 * M12 * M21 + M22 * M22 + S33 * S33) * 0.25 * inverse_or_zero(share)
+    )
 
 
 @scalar
@@ -160,7 +163,7 @@ def survey_run(j, start, stop, layer, dt, a, memory, terms, out):
             J_least, J_most = min(J_least, q.J), max(J_most, q.J)
         bx, by, D = point_gradients(0.0, 0.0, X, Y)
         qx, qy = _hourglass(X, Y, bx, by, u), _hourglass(X, Y, bx, by, w)
-        out[HOURGLASS_AMPLITUDE, i] = np.sqrt((qx * qx + qy * qy) / (16.0 * A))
+        out[HOURGLASS_AMPLITUDE, i] = math.sqrt((qx * qx + qy * qy) / (16.0 * A))
         if n == 1:
             qx0, qy0 = _hourglass(X, Y, bx, by, u0), _hourglass(X, Y, bx, by, w0)
             stiffness = hourglass * HOURGLASS_STIFFNESS * A * (dot(bx, bx) + dot(by, by))
@@ -170,7 +173,12 @@ def survey_run(j, start, stop, layer, dt, a, memory, terms, out):
             Qx += Tx + mu * (qx + qx0)
             Qy += Ty + mu * (qy + qy0)
             control += 0.5 * stiffness * (Qx * (qx - qx0) + Qy * (qy - qy0)) / dt
-        out[STORED, i], out[SPRINGS, i], out[VISCOUS, i], out[BULK_VISCOUS, i] = stored, springs, viscous, bulk_viscous
+        out[STORED, i], out[SPRINGS, i], out[VISCOUS, i], out[BULK_VISCOUS, i] = (
+            stored,
+            springs,
+            viscous,
+            bulk_viscous,
+        )
         out[HOURGLASS, i], out[J_LEAST, i], out[J_MOST, i] = control, J_least, J_most
 
 

@@ -11,7 +11,15 @@ from wrinklewave.dynamics.energy import deformation, overstresses
 from wrinklewave.dynamics.points import bulk_place, corners, n_points, point_place, volume_change
 from wrinklewave.materials.neo_hookean import second_piola_kirchhoff
 
-FIELDS = ("strain_xx", "strain_rate_xx", "nominal_stress_xx", "stress_xx", "stress_yy", "stress_xy", "volume_ratio")
+FIELDS = (
+    "strain_xx",
+    "strain_rate_xx",
+    "nominal_stress_xx",
+    "stress_xx",
+    "stress_yy",
+    "stress_xy",
+    "volume_ratio",
+)
 """Element means: nominal strain 1 - F11 and nominal stress -P11 (compression > 0) [1, Pa], rate of the strain along x
 per current length, -dv_x/dx [1/s], Cauchy stress (tension > 0) [Pa], volume ratio J [1]."""
 STRAIN, RATE, NOMINAL, XX, YY, XY, VOLUME = range(7)
@@ -42,7 +50,9 @@ def fields_run(j, start, stop, layer, a, memory, terms, out):
             A12 = mu * q.s12 + overstresses(memory, terms, factors, 4 * g + 2, r, i, q.s12, False)
             A33 = mu * q.s33 + overstresses(memory, terms, factors, 4 * g + 3, r, i, q.s33, False)
             Ji2 = q.J23 * q.J23 * q.J23
-            S11, S22, S12 = second_piola_kirchhoff(A11, A22, A12, A33, q.C11, q.C22, q.C12, q.J, q.J23, Ji2, p)
+            S11, S22, S12 = second_piola_kirchhoff(
+                A11, A22, A12, A33, q.C11, q.C22, q.C12, q.J, q.J23, Ji2, p
+            )
             P11, P12 = q.F11 * S11 + q.F12 * S12, q.F11 * S12 + q.F12 * S22
             P21, P22 = q.F21 * S11 + q.F22 * S12, q.F21 * S12 + q.F22 * S22
             strain += (1.0 - q.F11) / n

@@ -78,7 +78,9 @@ def mean_dilatation_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, facto
         area = 0.5 * (x13 * y24 - x24 * y13)
         rate = (vx[r, i] - vx[s, k]) * y24 - (vx[r, k] - vx[s, i]) * y13
         rate += x13 * (vy[r, k] - vy[s, i]) - x24 * (vy[r, i] - vy[s, k])
-        p = K * e + bulk_viscosity(0.5 * rate / area, squared_length(X13, Y13, X24, Y24, A), linear, quadratic)
+        p = K * e + bulk_viscosity(
+            0.5 * rate / area, squared_length(X13, Y13, X24, Y24, A), linear, quadratic
+        )
         if bulk_relaxes:
             for m in range(len(terms)):
                 H = overstress(memory[stride * m + 16][r, i], factors[m, 3], e)

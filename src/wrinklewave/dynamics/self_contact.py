@@ -61,7 +61,9 @@ def _hold(a, row, side, i, k, dt, old):
     if gap >= 0.0 or gap < -DEEPEST * length or share < 0.0 or share > 1.0:
         return 0.0
     (lx, ly), (rx, ry) = _place(a, row, i - 1), _place(a, row, i + 1)
-    if (-side * (ry - ly)) * nx + side * (rx - lx) * ny >= 0.0:  # the surface at the node does not face the segment
+    if (-side * (ry - ly)) * nx + side * (
+        rx - lx
+    ) * ny >= 0.0:  # the surface at the node does not face the segment
         return 0.0
     m0, m1, m2 = a.inverse_mass[row, i], a.inverse_mass[row, k], a.inverse_mass[row, k + 1]
     w1, w2 = 1.0 - share, share

@@ -100,7 +100,9 @@ class Simulation:
     @property
     def updates_per_second(self) -> float:
         """Element updates per second of the stepping loop so far."""
-        return self.step * self.model.mesh.n_elements / self.stepping_seconds if self.stepping_seconds else 0.0
+        return (
+            self.step * self.model.mesh.n_elements / self.stepping_seconds if self.stepping_seconds else 0.0
+        )
 
     @property
     def imbalance(self) -> float:
@@ -161,7 +163,13 @@ class Simulation:
         power, middle = s[[2, BULK_VISCOUS, HOURGLASS]], t - dt / 2
         self.work += 0.5 * (self.power + power) * (middle - self.power_time)
         self.power, self.power_time = power, middle
-        spent = sample.kinetic + s[STORED] + self.work.sum() + self.totals[CONTACT_LOSS] + self.totals[FRICTION_LOSS]
+        spent = (
+            sample.kinetic
+            + s[STORED]
+            + self.work.sum()
+            + self.totals[CONTACT_LOSS]
+            + self.totals[FRICTION_LOSS]
+        )
         least, most = float(rows[:, J_LEAST].min()), float(rows[:, J_MOST].max())
         self.history.append(
             (

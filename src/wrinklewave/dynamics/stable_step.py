@@ -21,6 +21,7 @@ from wrinklewave.dynamics.elements.quadrilateral import squared_length
 from wrinklewave.dynamics.points import area, corners, volume_change
 from wrinklewave.materials.neo_hookean import inverse_cube_root
 
+
 @scalar
 def element_step(X, Y, u, w, vx, vy, mu_i, K_i, linear, quadratic, rho):
     """Largest stable step [s] of one element; zero or less if it is inverted, NaN if its state is."""

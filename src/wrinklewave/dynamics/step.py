@@ -38,7 +38,9 @@ class Arrays(NamedTuple):
     vx: np.ndarray
     vy: np.ndarray
     inverse_mass: np.ndarray
-    runs: np.ndarray  # neighbours in a row of one material: first column, the one after the last, layer, [n_runs, 3]
+    runs: (
+        np.ndarray
+    )  # neighbours in a row of one material: first column, the one after the last, layer, [n_runs, 3]
     first_run: np.ndarray  # of each row, and the number of all, [n_rows + 1]
     moduli: np.ndarray  # [n_layers, 5], as one_point_row takes them
     terms: np.ndarray  # [n_layers, n_terms, 3]: shear share, bulk share [Pa], relaxation time [s]

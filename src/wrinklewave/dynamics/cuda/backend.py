@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numba import config, cuda
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 SAMPLES_PER_LAUNCH = 64
 SIMULATED_THREADS = 8
 """In numba's simulator every thread is one of Python's."""
+SIMULATED_RESIDENTS = 64
+"""Nodes that the simulated device is said to have threads for, so that small meshes try both ways of launching."""
 
 config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # meshes too small to fill a GPU are no mistake
 
@@ -41,6 +43,23 @@ class _Resident:
     memory: tuple[Any, ...]
     boundary: Boundary
     density: Any
+
+
+class _Times(NamedTuple):
+    """Arguments of a march: time, last step, step [s], and the Prony coefficients of the first step."""
+
+    t: float
+    dt_last: float
+    dt: float
+    first_factors: Any
+
+
+class _Samples(NamedTuple):
+    """Where the device puts its samples, one after the other."""
+
+    sums: Any
+    totals: Any
+    corner: Any
 
 
 class Cuda:
@@ -58,33 +77,36 @@ class Cuda:
                 cure="set NUMBA_DISABLE_JIT=1 as well",
             )
         self._model = model
+        self._threads = SIMULATED_THREADS if config.ENABLE_CUDASIM else kernels.BLOCK
+        self._blocks = -(-model.mesh.X.size // self._threads)
 
     def march(
         self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
     ) -> Iterator[Sample]:
         """Step and survey on the device; samples come from it by the launch."""
-        host = self._model.arrays
+        factors = self._model.arrays.factors
         for first in range(0, n, group * SAMPLES_PER_LAUNCH):
             count = min(group * SAMPLES_PER_LAUNCH, n - first)
-            update_factors(host, dt_last if first == 0 else dt, dt)
-            first_factors = cuda.to_device(host.factors)
+            last = dt_last if first == 0 else dt
+            update_factors(self._model.arrays, last, dt)
+            times = _Times(t + first * dt, last, dt, cuda.to_device(factors))
             if count > 1:
-                update_factors(host, dt, dt)
-            self._on_device.arrays.factors.copy_to_device(host.factors)
-            yield from self._launch(count, group, t + first * dt, dt_last if first == 0 else dt, dt, first_factors, totals)
+                update_factors(self._model.arrays, dt, dt)
+            self._on_device.arrays.factors.copy_to_device(factors)
+            yield from self._march(count, group, times, totals)
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
         d = self._on_device
         out = cuda.device_array(self._model.mesh.shape)
-        kernels.stable_steps[self._blocks(), self._threads](d.arrays, d.layer, d.density, out)
+        kernels.stable_steps[self._blocks, self._threads](d.arrays, d.layer, d.density, out)
         return out.copy_to_host()
 
     def fields(self) -> NDArray[np.float64]:
         """Element fields."""
         d = self._on_device
         out = cuda.device_array((len(FIELDS), *self._model.mesh.shape))
-        kernels.fields[self._blocks(), self._threads](d.arrays, d.layer, d.memory, self._model.terms, out)
+        kernels.fields[self._blocks, self._threads](d.arrays, d.layer, d.memory, self._model.terms, out)
         return out.copy_to_host()
 
     def fetch_nodes(self) -> None:
@@ -113,44 +135,24 @@ class Cuda:
         )
 
     @property
-    def _threads(self) -> int:
-        return SIMULATED_THREADS if config.ENABLE_CUDASIM else kernels.BLOCK
-
-    def _blocks(self) -> int:
-        """Blocks that give every node a thread of its own."""
-        return -(-self._model.mesh.X.size // self._threads)
-
-    def _cooperating_blocks(self, arguments: tuple[Any, ...]) -> int:
-        """As many of these as can be on the device together, so that they may wait for each other."""
+    def _fits(self) -> bool:
+        """Whether every node can have a thread at once: a multiprocessor always holds one block."""
         if config.ENABLE_CUDASIM:
-            return 1
-        kernel = kernels.march.compile(tuple(kernels.march.typeof_pyval(argument) for argument in arguments))
-        return min(self._blocks(), kernel.max_cooperative_grid_blocks(self._threads))
+            return self._model.mesh.X.size <= SIMULATED_RESIDENTS
+        return self._blocks <= cuda.get_current_device().MULTIPROCESSOR_COUNT
 
-    def _launch(
-        self,
-        n: int,
-        group: int,
-        t: float,
-        dt_last: float,
-        dt: float,
-        first_factors: Any,
-        totals: NDArray[np.float64],
-    ) -> Iterator[Sample]:
-        d, count = self._on_device, -(-n // group)
-        rows, columns = self._model.mesh.X.shape
+    def _march(self, n: int, group: int, times: _Times, totals: NDArray[np.float64]) -> Iterator[Sample]:
+        count, (rows, columns) = -(-n // group), self._model.mesh.X.shape
         edge_nodes = n_edge_nodes(rows, columns)
-        samples = (
+        gathered = cuda.to_device(np.zeros((edge_nodes, N_TOTALS)))
+        samples = _Samples(
             cuda.to_device(np.zeros((count, rows, kernels.N_SUMS))),
             cuda.device_array((count, edge_nodes, N_TOTALS)),
             cuda.device_array((count, 2)),
         )
-        gathered = cuda.to_device(np.zeros((edge_nodes, N_TOTALS)))
-        state = (d.arrays, d.layer, d.memory, self._model.terms, d.boundary)
-        arguments = (n, group, t, dt_last, dt, first_factors, *state, gathered, samples)
-        blocks = self._cooperating_blocks(arguments)
         begin = time.perf_counter()
-        kernels.march[blocks, self._threads](*arguments)
+        launch = self._in_one_launch if self._fits else self._in_groups
+        launch(n, group, times, gathered, samples)
         sums, edges, corner = (sample.copy_to_host() for sample in samples)
         seconds = time.perf_counter() - begin
         before = totals.copy()
@@ -164,3 +166,29 @@ class Cuda:
                 kinetic=float(sums[k, :, kernels.KINETIC].sum()),
                 corner=(float(corner[k, 0]), float(corner[k, 1])),
             )
+
+    def _in_one_launch(self, n: int, group: int, times: _Times, gathered: Any, samples: _Samples) -> None:
+        d = self._on_device
+        state = (d.arrays, d.layer, d.memory, self._model.terms, d.boundary, gathered)
+        blocks = 1 if config.ENABLE_CUDASIM else self._blocks
+        kernels.march[blocks, self._threads](n, group, *times, *state, *samples)
+
+    def _in_groups(self, n: int, group: int, times: _Times, gathered: Any, samples: _Samples) -> None:
+        d = self._on_device
+        state = (d.arrays, d.layer, d.memory, self._model.terms)
+        blocks = 0
+        for k, first in enumerate(range(0, n, group)):
+            if first > 0:
+                times = _Times(times.t + group * times.dt, times.dt, times.dt, d.arrays.factors)
+            arguments = (min(group, n - first), *times, *state, d.boundary, gathered)
+            blocks = blocks or self._cooperating_blocks(kernels.steps, arguments)
+            kernels.steps[blocks, self._threads](*arguments)
+            then = (samples.sums[k], samples.totals[k], samples.corner[k])
+            kernels.sample[self._model.mesh.X.shape[0], self._threads](times.dt, *state, gathered, *then)
+
+    def _cooperating_blocks(self, kernel: Any, arguments: tuple[Any, ...]) -> int:
+        """As many blocks as are useful and can be on the device together, so that they may wait for each other."""
+        if config.ENABLE_CUDASIM:
+            return 1
+        compiled = kernel.compile(tuple(kernel.typeof_pyval(argument) for argument in arguments))
+        return min(self._blocks, compiled.max_cooperative_grid_blocks(self._threads))

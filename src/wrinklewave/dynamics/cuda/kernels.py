@@ -7,8 +7,12 @@ All that names ``cuda`` is in this one module, as numba's simulator demands.
 
 from __future__ import annotations
 
-from numba import cuda
+from collections.abc import Callable
+from typing import Any
 
+from numba import config, cuda
+
+from wrinklewave._jit import choose_cache
 from wrinklewave.dynamics.boundary import (
     FORCE,
     FREE,
@@ -32,6 +36,16 @@ BLOCK = 256
 KINETIC = N_COLUMNS
 N_SUMS = N_COLUMNS + 1
 """Sums of a row: a survey's columns, then the kinetic energy of its nodes."""
+
+
+def _kernel(**options: Any) -> Callable[[Callable[..., Any]], Any]:
+    """Compile when first launched, and keep it on disk; the simulator knows no options."""
+
+    def compile_lazily(function: Callable[..., Any]) -> Any:
+        choose_cache(function)
+        return cuda.jit(cache=True, **({} if config.ENABLE_CUDASIM else options))(function)
+
+    return compile_lazily
 
 
 @cuda.jit(device=True)
@@ -152,14 +166,9 @@ def _sums(dt, a, layer, memory, terms, sums):
             sums[j, column] = _total(column, value, shared)
 
 
-@cuda.jit(cache=True)
-def march(n, group, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals, samples):
-    """Take ``n`` steps of ``dt`` from time ``t``, and a sample after every ``group`` of them and at the end.
-
-    ``first_factors`` are the Prony coefficients of the first step, which follows one of ``dt_last``. ``samples`` is a
-    tuple: sums [n_samples, n_rows + 1, N_SUMS], totals [n_samples, n_edge_nodes, N_TOTALS], corner [n_samples, 2].
-    """
-    sums, totals_then, corner = samples
+@cuda.jit(device=True)
+def _steps(n, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals):
+    """Take ``n`` steps of ``dt`` from time ``t``; the Prony coefficients of the first follow on one of ``dt_last``."""
     grid = cuda.cg.this_grid()
     first = cuda.grid(1)
     for step in range(n):
@@ -171,18 +180,67 @@ def march(n, group, t, dt_last, dt, first_factors, a, layer, memory, terms, boun
         if cuda.blockIdx.x == 0:
             _edges(t + (step + 1) * dt, dt, a, boundary, totals)
         grid.sync()
-        if (step + 1) % group == 0 or step + 1 == n:
-            sample = step // group
-            _sums(dt, a, layer, memory, terms, sums[sample])
-            for m in range(first, totals.shape[0], cuda.gridsize(1)):
-                for k in range(totals.shape[1]):
-                    totals_then[sample, m, k] = totals[m, k]
-            if first == 0:
-                corner[sample, 0], corner[sample, 1] = a.u[-1, 0], a.w[-1, 0]
-            grid.sync()
 
 
-@cuda.jit(cache=True)
+@cuda.jit(device=True)
+def _sample(dt, a, layer, memory, terms, totals, sums, totals_now, corner):
+    """The present state in numbers: ``sums`` [n_rows + 1, N_SUMS], ``totals_now`` as ``totals``, ``corner`` [2]."""
+    _sums(dt, a, layer, memory, terms, sums)
+    first = cuda.grid(1)
+    for n in range(first, totals.shape[0], cuda.gridsize(1)):
+        for k in range(totals.shape[1]):
+            totals_now[n, k] = totals[n, k]
+    if first == 0:
+        corner[0], corner[1] = a.u[-1, 0], a.w[-1, 0]
+
+
+@_kernel(max_registers=128)
+def steps(n, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals):
+    """Steps alone, with registers for half as many threads again: for meshes that take all of them."""
+    _steps(n, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals)
+
+
+@_kernel()
+def sample(dt, a, layer, memory, terms, totals, sums, totals_now, corner):
+    """A sample alone."""
+    _sample(dt, a, layer, memory, terms, totals, sums, totals_now, corner)
+
+
+@_kernel()
+def march(
+    n,
+    group,
+    t,
+    dt_last,
+    dt,
+    first_factors,
+    a,
+    layer,
+    memory,
+    terms,
+    boundary,
+    totals,
+    sums,
+    totals_then,
+    corner,
+):
+    """``n`` steps, and a sample after every ``group`` of them and at the end: for meshes with a thread for every node.
+
+    Samples are the first index of ``sums``, ``totals_then`` and ``corner``.
+    """
+    grid = cuda.cg.this_grid()
+    done = 0
+    while done < n:
+        count = min(group, n - done)
+        dt_before, factors = dt_last if done == 0 else dt, first_factors if done == 0 else a.factors
+        _steps(count, t + done * dt, dt_before, dt, factors, a, layer, memory, terms, boundary, totals)
+        k = done // group
+        _sample(dt, a, layer, memory, terms, totals, sums[k], totals_then[k], corner[k])
+        grid.sync()
+        done += count
+
+
+@_kernel()
 def fields(a, layer, memory, terms, out):
     """Element fields of the present state, ``out`` [len(FIELDS), n_rows, n_columns]."""
     rows, columns = layer.shape
@@ -192,7 +250,7 @@ def fields(a, layer, memory, terms, out):
         fields_run(j, i, i + 1, layer[j, i], a, memory, terms, out)
 
 
-@cuda.jit(cache=True)
+@_kernel()
 def stable_steps(a, layer, density, out):
     """Largest stable step of each element [s], ``out`` [n_rows, n_columns]."""
     rows, columns = layer.shape

@@ -66,7 +66,7 @@ def find_columns(
     )
     expected = levels.mean_noise * (1.0 + _MISFIT_SIGMAS / np.sqrt(2.0 * np.maximum(count, 1)))
     misshapen = (count > 0) & (residual > expected + _MISFIT * levels.contrast)
-    return Columns(rows, sigma).only(~with_neighbours(misshapen, blur))
+    return Columns(rows, sigma).only(~with_neighbours(misshapen | levels.blocked, blur))
 
 
 @allocating

@@ -21,7 +21,6 @@ _FEWEST = 4 * ORDER  # columns with an edge
 _ROUGHLY, _FINELY = 0.05, 1e-3  # px: where the columns' iterations stop, first and last time
 _ASTRAY = 6.0  # standard uncertainties between a column and the surface through its neighbours ...
 _ASTRAY_ROWS = 0.3  # ... and pixels beyond
-_BRIDGE = 1.0  # a surface point is valid while its uncertainty is below so many of a single column's
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class Edge:
     Attributes:
         rows: the surface regularised along the sample, at the stated resolution.
         sigma: standard uncertainty of ``rows``.
-        valid: whether ``rows`` is an observation (gaps much shorter than the resolution are bridged).
+        valid: whether ``rows`` is at least as certain as a single column's estimate; elsewhere it bridges a gap.
         column_rows: the surface column by column: each one's own estimate, freed of the lateral blur's bias.
         column_sigma: standard uncertainty of ``column_rows``.
         column_valid: whether a well-shaped edge was found in the column.
@@ -62,6 +61,23 @@ class Edge:
     column_valid: Flags
     contrast: float
     noise: float
+
+
+@dataclass(frozen=True)
+class RoughEdge:
+    """The surface to a fraction of a pixel; arrays of shape [n_columns].
+
+    Attributes:
+        rows: where the columns see it [px], bridged where something hides it; NaN beside the sample.
+        slope: of the surface.
+        beyond: ``rows`` less what the linear lateral blur makes of the surface [px].
+        levels: grey values beside it.
+    """
+
+    rows: Floats
+    slope: Floats
+    beyond: Floats
+    levels: Levels
 
 
 class EdgeFinder:
@@ -84,27 +100,39 @@ class EdgeFinder:
 
     def find(self, image: Pixels, *, first: int = 0, stop: int | None = None) -> Edge:
         """The surface in the columns from ``first`` up to ``stop`` of an image [n_rows, n_columns]."""
+        coarse = self.coarse(image)
+        return self.fine(image, self.rough(image, coarse, first=first, stop=stop))
+
+    def coarse(self, image: Pixels) -> Floats:
+        """Row of the edge in every column to about a pixel, shape [n_columns]; anything where there is none."""
+        return coarse_edge(image, 1.0 if self.optics.sample_brighter else -1.0)
+
+    def rough(self, image: Pixels, coarse: Floats, *, first: int = 0, stop: int | None = None) -> RoughEdge:
+        """The surface to a fraction of a pixel, by which it is known what stands before it."""
         n_columns = image.shape[1]
         stop = n_columns if stop is None else min(stop, n_columns)
-        start = coarse_edge(image, 1.0 if self.optics.sample_brighter else -1.0)
-        slope, beyond = _slope(start, _COARSE_SPAN), np.zeros(n_columns)
-        levels = find_levels(image, start, self._seen_blur(slope), max(first, 0), stop)
-        columns = find_columns(image, start, self._seen_blur(slope), levels, levels.usable, _ROUGHLY)
+        slope = _slope(coarse, _COARSE_SPAN)
+        levels = find_levels(image, coarse, self._seen_blur(slope), max(first, 0), stop)
+        columns = find_columns(image, coarse, self._seen_blur(slope), levels, levels.usable, _ROUGHLY)
+        if columns.found.sum() < _FEWEST:
+            return RoughEdge(np.full(n_columns, np.nan), slope, np.zeros(n_columns), levels)
+        fit = self._fit(columns, slope, np.zeros(n_columns))
+        slope[fit.part] = _slope(fit.surface, 1)[self._reach : -self._reach]
+        linear = seen_linearly(fit.surface, local_kernels(slope[fit.part], self._kernels))
+        rows, beyond = np.full(n_columns, np.nan), np.zeros(n_columns)
+        rows[fit.part] = seen_exactly(fit.surface, linear, slope[fit.part], self.optics.blur)
+        beyond[fit.part] = rows[fit.part] - linear
+        return RoughEdge(rows, slope, beyond, levels)
+
+    def fine(self, image: Pixels, rough: RoughEdge, blocked: Flags | None = None) -> Edge:
+        """The surface at both resolutions; ``blocked`` columns [n_columns] are hidden by something known."""
+        levels = rough.levels if blocked is None else rough.levels.without(blocked)
+        usable = levels.usable & np.isfinite(rough.rows)
+        columns = find_columns(image, rough.rows, self._seen_blur(rough.slope), levels, usable, _FINELY)
+        columns = columns.only(np.abs(columns.rows - rough.rows) <= _ASTRAY * columns.sigma + _ASTRAY_ROWS)
         if columns.found.sum() < _FEWEST:
             return _nothing(levels)
-        rough = self._fit(columns, slope, beyond)
-        part = rough.part
-        slope[part] = _slope(rough.surface, 1)[self._reach : -self._reach]
-        linear = seen_linearly(rough.surface, local_kernels(slope[part], self._kernels))
-        start = start.copy()
-        start[part] = seen_exactly(rough.surface, linear, slope[part], self.optics.blur)
-        beyond[part] = start[part] - linear
-        usable = levels.usable & _within(part, n_columns)
-        columns = find_columns(image, start, self._seen_blur(slope), levels, usable, _FINELY)
-        columns = columns.only(np.abs(columns.rows - start) <= _ASTRAY * columns.sigma + _ASTRAY_ROWS)
-        if columns.found.sum() < _FEWEST:
-            return _nothing(levels)
-        return self._edge(columns, beyond, self._fit(columns, slope, beyond), levels)
+        return self._edge(columns, rough.beyond, self._fit(columns, rough.slope, rough.beyond), levels)
 
     def _seen_blur(self, slope: Floats) -> Floats:
         """Standard deviation of the blur that a column sees at the slope m, without the pixel's height.
@@ -143,7 +171,7 @@ class EdgeFinder:
         return Edge(
             rows=rows,
             sigma=sigma,
-            valid=sigma < _BRIDGE * np.maximum(known, fit.level_sigma),
+            valid=sigma < np.maximum(known, fit.level_sigma),
             column_rows=columns.rows - beyond + shift,
             column_sigma=columns.sigma,
             column_valid=columns.found,
@@ -170,12 +198,6 @@ def _nothing(levels: Levels) -> Edge:
         np.zeros(n_columns, bool),
     )
     return Edge(nowhere, unknown, never, nowhere, unknown, never, levels.contrast, levels.mean_noise)
-
-
-def _within(part: slice, n_columns: int) -> Flags:
-    inside = np.zeros(n_columns, bool)
-    inside[part] = True
-    return inside
 
 
 def _slope(rows: Floats, span: int) -> Floats:

@@ -29,32 +29,6 @@ _SPOILT = 2.2  # blurs between a column that something stands before and the nea
 _LOWEST_CONTRAST = 0.4  # of the median: columns with less have no edge
 
 
-@dataclass(frozen=True)
-class Levels:
-    """Grey values beside the edge.
-
-    Attributes:
-        origin: rows at which ``value`` holds, shape [n_columns].
-        value: above (background) and below (sample), shape [2, n_columns]; NaN where unknown.
-        gradient: the same per pixel down the column, shape [2, n_columns].
-        noise: standard deviation of a pixel's noise above and below, shape [2].
-        usable: whether the column shows a step of the usual contrast, shape [n_columns].
-        contrast: median height of the step.
-    """
-
-    origin: Floats
-    value: Floats
-    gradient: Floats
-    noise: Floats
-    usable: Flags
-    contrast: float
-
-    @property
-    def mean_noise(self) -> float:
-        """Root mean square of both sides' noise."""
-        return float(np.sqrt(np.mean(self.noise**2)))
-
-
 class _Band(NamedTuple):
     """Sums over the band of each column on one side, shape [n_columns]; d is the distance from the edge."""
 
@@ -70,6 +44,43 @@ class _Band(NamedTuple):
         return self.grey / np.maximum(self.n, 1.0)
 
 
+@dataclass(frozen=True)
+class Levels:
+    """Grey values beside the edge.
+
+    Attributes:
+        origin: rows at which ``value`` holds, shape [n_columns].
+        blur: down the columns [px], shape [n_columns].
+        bands: sums over the pixels beside the edge, above and below.
+        value: above (background) and below (sample), shape [2, n_columns]; NaN where unknown.
+        gradient: the same per pixel down the column, shape [2, n_columns].
+        noise: standard deviation of a pixel's noise above and below, shape [2].
+        usable: whether the column shows a step of the usual contrast, shape [n_columns].
+        blocked: whether it was looked at and does not, shape [n_columns].
+        contrast: median height of the step.
+    """
+
+    origin: Floats
+    blur: Floats
+    bands: tuple[_Band, _Band]
+    value: Floats
+    gradient: Floats
+    noise: Floats
+    usable: Flags
+    blocked: Flags
+    contrast: float
+
+    def without(self, hidden: Flags) -> Levels:
+        """The same from other columns only, and the ``hidden`` ones [n_columns] blocked."""
+        usable = self.usable & ~hidden
+        return _levels(self.origin, self.blur, self.bands, usable, self.blocked | (self.usable & hidden))
+
+    @property
+    def mean_noise(self) -> float:
+        """Root mean square of both sides' noise."""
+        return float(np.sqrt(np.mean(self.noise**2)))
+
+
 def find_levels(image: Pixels, rows: Floats, blur: Floats, first: int, stop: int) -> Levels:
     """Levels on both sides of an edge known to a pixel or two.
 
@@ -79,23 +90,32 @@ def find_levels(image: Pixels, rows: Floats, blur: Floats, first: int, stop: int
         blur: standard deviation of the blur down each column [px], shape [n_columns].
         first, stop: the columns to look at.
     """
-    bands = [_Band(*_band_sums(image, rows, blur, below, first, stop)) for below in (False, True)]
+    bands = (
+        _Band(*_band_sums(image, rows, blur, False, first, stop)),
+        _Band(*_band_sums(image, rows, blur, True, first, stop)),
+    )
     step = bands[1].mean - bands[0].mean
-    usable = (bands[0].n >= _FEWEST) & (bands[1].n >= _FEWEST)
-    typical = float(np.median(step[usable])) if usable.any() else 0.0
-    usable &= step * typical > _LOWEST_CONTRAST * typical**2
+    seen = (bands[0].n >= _FEWEST) & (bands[1].n >= _FEWEST)
+    typical = float(np.median(step[seen])) if seen.any() else 0.0
+    usable = seen & (step * typical > _LOWEST_CONTRAST * typical**2)
+    return _levels(rows, blur, bands, usable, _looked_at(first, stop, rows.size) & ~usable)
+
+
+def _levels(rows: Floats, blur: Floats, bands: tuple[_Band, _Band], usable: Flags, blocked: Flags) -> Levels:
+    step = (bands[1].mean - bands[0].mean)[usable]
+    contrast = abs(float(np.median(step))) if usable.any() else 0.0
     noise = np.array([_pooled_noise(band, usable) for band in bands])
-    sides = [
-        _side(band, usable, abs(typical), float(sigma), blur)
-        for band, sigma in zip(bands, noise, strict=True)
-    ]
+    sides = [_side(bands[i], usable, contrast, float(noise[i]), blur) for i in (0, 1)]
     return Levels(
         origin=rows,
+        blur=blur,
+        bands=bands,
         value=np.array([value for value, _ in sides]),
         gradient=np.array([gradient for _, gradient in sides]),
         noise=noise,
         usable=usable,
-        contrast=abs(typical),
+        blocked=blocked,
+        contrast=contrast,
     )
 
 
@@ -104,6 +124,11 @@ def with_neighbours(marked: Flags, blur: Floats) -> Flags:
     width = int(np.ceil(_SPOILT * float(np.min(blur))))
     count = np.cumsum(np.concatenate([np.zeros(width + 1), marked, np.zeros(width)]))
     return count[2 * width + 1 :] > count[: -2 * width - 1]
+
+
+def _looked_at(first: int, stop: int, n_columns: int) -> Flags:
+    columns = np.arange(n_columns)
+    return (columns >= first) & (columns < stop)
 
 
 def _side(band: _Band, usable: Flags, contrast: float, noise: float, blur: Floats) -> tuple[Floats, Floats]:

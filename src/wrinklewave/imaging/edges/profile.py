@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from wrinklewave._jit import allocating
+from wrinklewave.imaging.arrays import Floats
 
 _REACH = 6.0  # Phi(-6) = 1e-9
 _PER_UNIT = 128  # linear interpolation at this spacing is good to 3e-6 of the step
@@ -39,3 +40,14 @@ def normal_distribution(t: float) -> tuple[float, float]:
     k = int(position)
     f = position - k
     return _PHI[k] + f * (_PHI[k + 1] - _PHI[k]), _G[k] + f * (_G[k + 1] - _G[k])
+
+
+def blurred_step(u: Floats, blur: float) -> Floats:
+    """Profile E at the distances ``u`` from the edge [px], for a blur [px]."""
+
+    def G(t: Floats) -> Floats:
+        from scipy.special import ndtr
+
+        return np.asarray(t * ndtr(t) + np.exp(-0.5 * t**2) / np.sqrt(2 * np.pi))
+
+    return blur * (G((u + 0.5) / blur) - G((u - 0.5) / blur))
