@@ -119,10 +119,9 @@ def restarted(device: Device) -> dict[str, Array]:
         events = first.run()
         next(events)
         next(events)
-        write_checkpoint(file, first, Record({}), "")
+        write_checkpoint(file, first, Record({"nothing": np.zeros(1)}), "")
         second = Simulation(struck(), EVENTS, device=device, history_interval=2.2e-5)
-        with_record = read_checkpoint(file, second, "")
-    assert not with_record.arrays
+        read_checkpoint(file, second, "")
     for _ in second.run():
         pass
     return results(second)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from wrinklewave.dynamics.model import Model
 
 SAMPLES_PER_LAUNCH = 64
-SIMULATED_THREADS = 8
+SIMULATED_THREADS = 4
 """In numba's simulator every thread is one of Python's."""
 SIMULATED_RESIDENTS = 64
 """Nodes that the simulated device is said to have threads for, so that small meshes try both ways of launching."""
@@ -78,6 +78,7 @@ class Cuda:
             )
         self._model = model
         self._threads = SIMULATED_THREADS if config.ENABLE_CUDASIM else kernels.BLOCK
+        self._shared = 8 * self._threads  # bytes: one number for each
         self._blocks = -(-model.mesh.X.size // self._threads)
 
     def march(
@@ -92,7 +93,7 @@ class Cuda:
             times = _Times(t + first * dt, last, dt, cuda.to_device(factors))
             if count > 1:
                 update_factors(self._model.arrays, dt, dt)
-            self._on_device.arrays.factors.copy_to_device(factors)
+            self._on_device.arrays.factors.copy_to_device(factors)  # type: ignore[attr-defined]  # on the device it is a device array
             yield from self._march(count, group, times, totals)
 
     def stable_steps(self) -> NDArray[np.float64]:
@@ -171,12 +172,12 @@ class Cuda:
         d = self._on_device
         state = (d.arrays, d.layer, d.memory, self._model.terms, d.boundary, gathered)
         blocks = 1 if config.ENABLE_CUDASIM else self._blocks
-        kernels.march[blocks, self._threads](n, group, *times, *state, *samples)
+        kernels.march[blocks, self._threads, 0, self._shared](n, group, *times, *state, *samples)
 
     def _in_groups(self, n: int, group: int, times: _Times, gathered: Any, samples: _Samples) -> None:
         d = self._on_device
         state = (d.arrays, d.layer, d.memory, self._model.terms)
-        blocks = 0
+        blocks, rows = 0, self._model.mesh.X.shape[0]
         for k, first in enumerate(range(0, n, group)):
             if first > 0:
                 times = _Times(times.t + group * times.dt, times.dt, times.dt, d.arrays.factors)
@@ -184,7 +185,7 @@ class Cuda:
             blocks = blocks or self._cooperating_blocks(kernels.steps, arguments)
             kernels.steps[blocks, self._threads](*arguments)
             then = (samples.sums[k], samples.totals[k], samples.corner[k])
-            kernels.sample[self._model.mesh.X.shape[0], self._threads](times.dt, *state, gathered, *then)
+            kernels.sample[rows, self._threads, 0, self._shared](times.dt, *state, gathered, *then)
 
     def _cooperating_blocks(self, kernel: Any, arguments: tuple[Any, ...]) -> int:
         """As many blocks as are useful and can be on the device together, so that they may wait for each other."""

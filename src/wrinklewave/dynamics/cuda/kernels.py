@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from numba import config, cuda
+from numba import config, cuda, float64
 
 from wrinklewave._jit import choose_cache
 from wrinklewave.dynamics.boundary import (
@@ -146,7 +146,7 @@ def _sums(dt, a, layer, memory, terms, sums):
 
     The contributions of the elements lie where their forces were: the next step computes those anew.
     """
-    shared = cuda.shared.array(BLOCK, "float64")
+    shared = cuda.shared.array(0, float64)  # as much as the launch asks for
     thread, threads = cuda.threadIdx.x, cuda.blockDim.x
     rows, columns = layer.shape
     for j in range(cuda.blockIdx.x, rows + 1, cuda.gridDim.x):
