@@ -7,7 +7,12 @@ import platform
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from wrinklewave.errors import InputError
+
+if TYPE_CHECKING:
+    from wrinklewave.dynamics.backends import Device
 
 REQUIRED = (
     *("numpy", "scipy", "numba", "xarray", "h5netcdf", "h5py", "pydantic", "pint"),
@@ -20,6 +25,10 @@ OPTIONAL = {
     "cluster": ("dask", "dask-jobqueue"),
 }
 """Packages that the extras of the same names bring."""
+
+
+DEVICES = ("cpu", "cuda", "auto")
+"""What may be asked for."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +115,26 @@ def gpus() -> list[Gpu] | str:
         return [_gpu(device) for device in cuda.gpus]
     except Exception as error:  # a broken driver raises whatever it likes; doctor is there to say so
         return f"CUDA does not start: {type(error).__name__}: {error}".splitlines()[0]
+
+
+def choose_device(wish: str) -> Device:
+    """Return the device that a wish (``cpu``, ``cuda`` or ``auto``: the GPU if there is one) leads to.
+
+    Raises:
+        InputError: if there is no such device.
+    """
+    if wish not in DEVICES:
+        raise InputError(f'"{wish}"', key="device", expected=", ".join(DEVICES))
+    if wish == "cpu":
+        return "cpu"
+    found = gpus()
+    if not isinstance(found, str):
+        return "cuda"
+    if wish == "auto":
+        return "cpu"
+    raise InputError(
+        f"no GPU that can be used ({found})", key="device", cure="cpu or auto; wrinklewave doctor"
+    )
 
 
 def threading() -> Threading:

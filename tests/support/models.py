@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -132,6 +134,29 @@ def traction_stress(f: Array, length: float, height: float) -> Array:
     right = f[:, :, -1].sum(axis=1) / height
     top = f[:, -1, :].sum(axis=1) / length
     return np.column_stack([right, top])
+
+
+def march(model: Model, dt: float, n: int) -> Iterator[Array]:
+    """Take ``n`` steps of ``dt`` [s] from rest; yields the totals after each (places in dynamics.boundary)."""
+    totals = np.zeros(N_TOTALS)
+    for step in range(n):
+        advance(
+            1,
+            step * dt,
+            dt if step else 0.0,
+            dt,
+            model.arrays,
+            model.memory_rows,
+            model.terms,
+            model.boundary,
+            totals,
+        )
+        yield totals
+
+
+def stable_step(model: Model) -> float:
+    """The solver's own estimate of the largest stable step of the present state [s]."""
+    return Simulation(model, np.zeros(1)).stable_step()
 
 
 def run(model: Model, events: Array, **options: float) -> Simulation:

@@ -29,13 +29,13 @@ GROWTH = {
 
 
 def measured_growth(film: Viscoelastic, substrate: Viscoelastic, wavelength: float, rate: float) -> float:
-    """Growth rate [1/s] of a small wrinkle over five of its e-foldings at 8 %, after everything else has died out.
+    """Growth rate [1/s] of a small wrinkle over two of its e-foldings at 8 %, after everything else has died out.
 
     The compression to 8 % is slow for the material but leaves the wrinkle little time to grow: the last part, above
     the critical strain, is as long as it takes the overstress to relax.
     """
-    relaxed = max([0.0, *(25 * substrate.tau_k)])
-    hold = relaxed + 8 / rate
+    relaxed = max([0.0, *(15 * substrate.tau_k)])
+    hold = relaxed + 6 / rate
     time = np.linspace(0.0, hold, 801)
     ramp = np.clip(time / (0.2 * relaxed + 1 / rate), 0.0, 1.0)
     strain = 0.08 * ramp * ramp * (3 - 2 * ramp)
@@ -47,7 +47,7 @@ def measured_growth(film: Viscoelastic, substrate: Viscoelastic, wavelength: flo
         wavelength=wavelength,
         imperfection=1e-14,
     )[:, 0]
-    late = time > hold - 3 / rate
+    late = time > hold - 2 / rate
     return float(np.polyfit(time[late], np.log(amplitude[late]), 1)[0])
 
 
@@ -68,8 +68,7 @@ def test_small_wrinkles_grow_at_the_exact_rate(row: dict[str, str], verified: Ve
     )
 
 
-@pytest.mark.parametrize("bulk_relaxes", [False, True])
-@pytest.mark.parametrize("factor", [0.8, 1.3])
+@pytest.mark.parametrize(("factor", "bulk_relaxes"), [(0.8, False), (1.3, True)])
 def test_other_wavelengths_and_a_compressible_substrate(
     factor: float, bulk_relaxes: bool, verified: Verified
 ) -> None:
@@ -226,5 +225,5 @@ def test_film_at_a_free_end_relaxes_into_the_block(verified: Verified) -> None:
     end = result.strain[-1]
     assert end[0] < 0.1 * strain[-1, 0]
     assert (np.diff(end[X < 30e-3]) > 0).all()
-    assert end[X == 25e-3] < strain[-1, 0]
+    assert np.interp(25e-3, X, end) < strain[-1, 0]
     assert np.abs(result.wrinkles.amplitude).max() == 0.0

@@ -8,12 +8,17 @@ from __future__ import annotations
 
 from wrinklewave._jit import scalar, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import GAUSS, dot, point_gradients
-from wrinklewave.dynamics.elements.quadrilateral import bulk_viscosity, squared_length
+from wrinklewave.dynamics.elements.quadrilateral import (
+    bulk_viscosity,
+    squared_length,
+    twice_area,
+    twice_area_rate,
+)
 from wrinklewave.materials.neo_hookean import (
+    first_piola_kirchhoff,
     inverse_cube_root,
     isochoric_shape,
     right_cauchy_green,
-    second_piola_kirchhoff,
 )
 from wrinklewave.materials.prony import memory as next_memory
 from wrinklewave.materials.prony import overstress
@@ -31,9 +36,9 @@ def _point(g, xi, eta, x, y, u, w, r, i, memory, terms, factors, mu):
     J = F11 * F22 - F12 * F21
     root = inverse_cube_root(J)
     J23 = root * root
-    Ji2 = J23 * J23 * J23
+    Ji = J23 * root
     C11, C22, C12 = right_cauchy_green(F11, F12, F21, F22)
-    s11, s22, s12, s33 = isochoric_shape(C11, C22, C12, Ji2)
+    s11, s22, s12, s33 = isochoric_shape(C11, C22, C12, Ji * Ji)
     A11, A22, A12, A33 = mu * s11, mu * s22, mu * s12, mu * s33
     for m in range(len(terms)):
         b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
@@ -49,9 +54,9 @@ def _point(g, xi, eta, x, y, u, w, r, i, memory, terms, factors, mu):
         H = overstress(memory[stride * m + 4 * g + 3][r, i], b, s33)
         A33 += H
         memory[stride * m + 4 * g + 3][r, i] = next_memory(H, a, b_next, s33)
-    S11, S22, S12 = second_piola_kirchhoff(A11, A22, A12, A33, C11, C22, C12, J, J23, Ji2, 0.0)
-    P11, P12 = D * (F11 * S11 + F12 * S12), D * (F11 * S12 + F12 * S22)
-    P21, P22 = D * (F21 * S11 + F22 * S12), D * (F21 * S12 + F22 * S22)
+    P11, P12, P21, P22 = first_piola_kirchhoff(
+        F11, F12, F21, F22, A11, A22, A12, A33, C11, C22, C12, D * J23, Ji, 0.0
+    )
     return bx, by, (P11, P12, P21, P22)
 
 
@@ -73,14 +78,20 @@ def mean_dilatation_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, facto
         X13, Y13, X24, Y24 = X1 - X3, Y1 - Y3, X2 - X4, Y2 - Y4
         u13, w13, u24, w24 = u1 - u3, w1 - w3, u2 - u4, w2 - w4
         x13, y13, x24, y24 = X13 + u13, Y13 + w13, X24 + u24, Y24 + w24
-        A = 0.5 * (X13 * Y24 - X24 * Y13)
+        A = 0.5 * twice_area(X13, Y13, X24, Y24)
         e = 0.5 * (X13 * w24 + u13 * Y24 + u13 * w24 - X24 * w13 - u24 * Y13 - u24 * w13) / A
-        area = 0.5 * (x13 * y24 - x24 * y13)
-        rate = (vx[r, i] - vx[s, k]) * y24 - (vx[r, k] - vx[s, i]) * y13
-        rate += x13 * (vy[r, k] - vy[s, i]) - x24 * (vy[r, i] - vy[s, k])
-        p = K * e + bulk_viscosity(
-            0.5 * rate / area, squared_length(X13, Y13, X24, Y24, A), linear, quadratic
+        rate = twice_area_rate(
+            x13,
+            y13,
+            x24,
+            y24,
+            vx[r, i] - vx[s, k],
+            vy[r, i] - vy[s, k],
+            vx[r, k] - vx[s, i],
+            vy[r, k] - vy[s, i],
         )
+        rate /= twice_area(x13, y13, x24, y24)
+        p = K * e + bulk_viscosity(rate, squared_length(X13, Y13, X24, Y24, A), linear, quadratic)
         if bulk_relaxes:
             for m in range(len(terms)):
                 H = overstress(memory[stride * m + 16][r, i], factors[m, 3], e)

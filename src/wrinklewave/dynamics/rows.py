@@ -14,25 +14,34 @@ of the last step, a and b of the next for the shear, then both b for the bulk;
 
 from __future__ import annotations
 
-from wrinklewave._jit import uintp, vector
+from wrinklewave._jit import scalar, uintp, vector
 from wrinklewave.dynamics.elements.one_point import hourglass_stiffness, nodal_forces
 from wrinklewave.dynamics.elements.quadrilateral import (
     bulk_viscosity,
-    centre_gradients,
-    gradient,
+    centre_gradient,
+    opposite_differences,
     squared_length,
-    volume_rate,
+    twice_area,
+    twice_area_rate,
 )
+from wrinklewave.dynamics.points import corners
 from wrinklewave.materials.neo_hookean import (
+    first_piola_kirchhoff,
     inverse_cube_root,
     isochoric_shape,
     right_cauchy_green,
-    second_piola_kirchhoff,
 )
 from wrinklewave.materials.prony import memory as next_memory
 from wrinklewave.materials.prony import overstress
 
 ONE = uintp(1)
+
+
+@scalar
+def differences(field, j, i):
+    """Of a nodal field over element (j, i), see :func:`opposite_differences`."""
+    v1, v2, v3, v4 = corners(field, j, i)
+    return opposite_differences(v1, v2, v3, v4)
 
 
 @vector
@@ -50,15 +59,26 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
     s = r + ONE
     for i in range(uintp(start), uintp(stop)):
         k = i + ONE
-        x13, y13 = X[r, i] - X[s, k], Y[r, i] - Y[s, k]
-        x24, y24 = X[r, k] - X[s, i], Y[r, k] - Y[s, i]
-        b1x, b1y, b2x, b2y, A = centre_gradients(x13, y13, x24, y24)
-        u13, u24 = u[r, i] - u[s, k], u[r, k] - u[s, i]
-        w13, w24 = w[r, i] - w[s, k], w[r, k] - w[s, i]
-        G11, G12 = gradient(b1x, b1y, b2x, b2y, u13, u24)
-        G21, G22 = gradient(b1x, b1y, b2x, b2y, w13, w24)
-        V11, V12 = gradient(b1x, b1y, b2x, b2y, vx[r, i] - vx[s, k], vx[r, k] - vx[s, i])
-        V21, V22 = gradient(b1x, b1y, b2x, b2y, vy[r, i] - vy[s, k], vy[r, k] - vy[s, i])
+        x13, x24, hX = differences(X, r, i)
+        y13, y24, hY = differences(Y, r, i)
+        u13, u24, qx = differences(u, r, i)
+        w13, w24, qy = differences(w, r, i)
+        A2 = twice_area(x13, y13, x24, y24)
+        inverse = 1.0 / A2
+        rate = twice_area_rate(
+            x13 + u13,
+            y13 + w13,
+            x24 + u24,
+            y24 + w24,
+            vx[r, i] - vx[s, k],
+            vy[r, i] - vy[s, k],
+            vx[r, k] - vx[s, i],
+            vy[r, k] - vy[s, i],
+        )
+        G11, G12 = centre_gradient(x13, y13, x24, y24, inverse, u13, u24)
+        G21, G22 = centre_gradient(x13, y13, x24, y24, inverse, w13, w24)
+        qx -= hX * G11 + hY * G12
+        qy -= hX * G21 + hY * G22
 
         F11, F22 = 1.0 + G11, 1.0 + G22
         e = G11 + G22 + G11 * G22 - G12 * G21
@@ -69,11 +89,6 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
         Ji2 = Ji * Ji
         C11, C22, C12 = right_cauchy_green(F11, G12, G21, F22)
         s11, s22, s12, s33 = isochoric_shape(C11, C22, C12, Ji2)
-
-        hX = (X[r, i] - X[r, k]) + (X[s, k] - X[s, i])
-        hY = (Y[r, i] - Y[r, k]) + (Y[s, k] - Y[s, i])
-        qx = (u[r, i] - u[r, k]) + (u[s, k] - u[s, i]) - hX * G11 - hY * G12
-        qy = (w[r, i] - w[r, k]) + (w[s, k] - w[s, i]) - hX * G21 - hY * G22
 
         q1, q2, Q1, Q2 = F11 * qx + G21 * qy, G12 * qx + F22 * qy, 0.0, 0.0
         A11, A22, A12, A33, p = mu * s11, mu * s22, mu * s12, mu * s33, K * e
@@ -102,20 +117,16 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
                 p += H
                 memory[stride * m + 6][r, i] = next_memory(H, a, factors[m, 4], e)
 
-        p += bulk_viscosity(
-            volume_rate(F11, G12, G21, F22, V11, V12, V21, V22, Ji),
-            squared_length(x13, y13, x24, y24, A),
-            linear,
-            quadratic,
-        )
+        L2 = squared_length(x13, y13, x24, y24, 0.5 * A2)
+        p += bulk_viscosity(rate * inverse * Ji, L2, linear, quadratic)
         Qx, Qy = mu * qx + Ji * (F22 * Q1 - G21 * Q2), mu * qy + Ji * (F11 * Q2 - G12 * Q1)
-        S11, S22, S12 = second_piola_kirchhoff(A11, A22, A12, A33, C11, C22, C12, J, J23, Ji2, p)
-        stiffness = hourglass_stiffness(b1x, b1y, b2x, b2y, A, hourglass)
-        T1, T2 = A * (F11 * S11 + G12 * S12), A * (F11 * S12 + G12 * S22)
-        f1, f2, f3, f4 = nodal_forces(b1x, b1y, b2x, b2y, T1, T2, hX, hY, stiffness * Qx)
+        P11, P12, P21, P22 = first_piola_kirchhoff(
+            F11, G12, G21, F22, A11, A22, A12, A33, C11, C22, C12, 0.5 * J23, Ji, 0.5 * p
+        )
+        stiffness = hourglass_stiffness(x13, y13, x24, y24, inverse, hourglass)
+        f1, f2, f3, f4 = nodal_forces(x13, y13, x24, y24, inverse, P11, P12, hX, hY, stiffness * Qx)
         forces[0, k], forces[2, k], forces[4, k], forces[6, k] = f1, f2, f3, f4
-        T1, T2 = A * (G21 * S11 + F22 * S12), A * (G21 * S12 + F22 * S22)
-        f1, f2, f3, f4 = nodal_forces(b1x, b1y, b2x, b2y, T1, T2, hX, hY, stiffness * Qy)
+        f1, f2, f3, f4 = nodal_forces(x13, y13, x24, y24, inverse, P21, P22, hX, hY, stiffness * Qy)
         forces[1, k], forces[3, k], forces[5, k], forces[7, k] = f1, f2, f3, f4
 
 

@@ -24,6 +24,7 @@ def other_bulk_choices(
     run: Run,
     *,
     threads: int | None = None,
+    device: str = "cpu",
     resume: bool = False,
     progress: Callable[[str, Progress], None] = lambda choice, state: None,
 ) -> dict[str, dict[str, Any]]:
@@ -42,6 +43,7 @@ def other_bulk_choices(
             with_bulk_response(run.case, choice),
             out=_folder(run.folder, choice),
             threads=threads,
+            device=device,
             resume=resume,
             overwrite=not resume,
             progress=lambda state, choice=choice: progress(choice, state),  # type: ignore[misc]

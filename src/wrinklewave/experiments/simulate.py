@@ -16,7 +16,7 @@ from wrinklewave.config import Case, load_case
 from wrinklewave.dynamics.checkpoint import read_checkpoint, write_checkpoint
 from wrinklewave.dynamics.model import build_model
 from wrinklewave.dynamics.simulation import HISTORY, Simulation
-from wrinklewave.environment import processor, versions
+from wrinklewave.environment import choose_device, processor, versions
 from wrinklewave.errors import InputError, RunError
 from wrinklewave.experiments.interruption import interruptible
 from wrinklewave.experiments.recording import FieldStore, SurfaceRecorder
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wrinklewave.analysis.results import Analysis
+    from wrinklewave.dynamics.backends import Device
     from wrinklewave.experiments.recording import FieldFrame
     from wrinklewave.mesh.block import GridMesh
 
@@ -98,6 +99,7 @@ def simulate(
     *,
     out: str | Path | None = None,
     threads: int | None = None,
+    device: str = "cpu",
     overrides: Sequence[str] = (),
     resume: bool = False,
     overwrite: bool = False,
@@ -109,6 +111,7 @@ def simulate(
         case: a case, or the path of a case file.
         out: folder for checkpoints and results; without it everything stays in memory.
         threads: default all cores that this process may use. Results do not depend on it.
+        device: ``cpu``, ``cuda``, or ``auto`` for the GPU if there is one. Results do not depend on it beyond rounding.
         overrides: ``"key=value"`` on top of the case file.
         resume: go on from the checkpoint in ``out``, if there is one.
         overwrite: replace an earlier run in ``out``.
@@ -119,10 +122,10 @@ def simulate(
         RunError: if the simulation cannot go on; what was computed is kept in ``out``.
     """
     case = _resolved(case, overrides)
-    threads = _use_threads(threads)
+    threads, chosen = _use_threads(threads), choose_device(device)
     folder = RunFolder.prepare(Path(out), case, resume=resume, overwrite=overwrite) if out else None
     place = folder.path if folder else None
-    simulation, recorder, store = _start(case, threads, folder, resume)
+    simulation, recorder, store = _start(case, threads, chosen, folder, resume)
     begin = time.perf_counter()
     try:
         outcome = _run(case, simulation, recorder, store, folder, progress)
@@ -173,7 +176,7 @@ def output_times(interval: float, end: float) -> NDArray[np.float64]:
 
 
 def _start(
-    case: Case, threads: int, folder: RunFolder | None, resume: bool
+    case: Case, threads: int, device: Device, folder: RunFolder | None, resume: bool
 ) -> tuple[Simulation, SurfaceRecorder, FieldStore]:
     end = case.solver.end_time
     surface, fields = (
@@ -186,6 +189,7 @@ def _start(
         events,
         safety=case.solver.safety,
         history_interval=case.output.history_interval,
+        device=device,
     )
     recorder = SurfaceRecorder(case.wrinkles.averaging_depth)
     store = FieldStore(folder.frames if folder else None)
@@ -260,6 +264,7 @@ def run_summary(run: Run, simulation: Simulation, threads: int, seconds: float) 
             "elements": rows * columns,
             "steps": simulation.step,
             "simulated_time_s": simulation.time,
+            "device": simulation.device,
             "threads": threads,
             "element_updates_per_s": simulation.updates_per_second,
             "stepping_time_s": simulation.stepping_seconds,

@@ -48,6 +48,9 @@ def growth_rate(
         strain: nominal compressive strain, held until everything has relaxed.
         wavenumber: k of the undeformed state [1/m].
         thickness: of the film [m].
+
+    Raises:
+        InputError: if nothing has a mass, so that nothing limits the rate.
     """
     from scipy.optimize import brentq
 
@@ -57,7 +60,12 @@ def growth_rate(
         )
         return float(np.linalg.eigvalsh(0.5 * (Z + Z.T))[0])
 
-    shear_speed = np.sqrt(film.mu_instantaneous / film.density)
+    density = max(film.density, substrate.density)
+    if density <= 0:
+        raise InputError(
+            "neither film nor substrate has a mass", key="density", expected="a positive density"
+        )
+    shear_speed = np.sqrt(film.mu_instantaneous / density)
     slow, fast = np.log(SLOWEST_RATE), np.log(shear_speed / thickness)
     if softest(slow) >= 0:
         return 0.0

@@ -53,8 +53,9 @@ def _gpus(gpus: list[Gpu] | str) -> list[str]:
 
 def _verdict(threading: Threading, gpus: list[Gpu] | str) -> list[str]:
     cpu = f"the processor, {threading.threads} threads"
-    return ["", f"simulate       {cpu}", f"measure        {cpu}"] + (
+    gpu = (
         []
         if isinstance(gpus, str)
-        else ["               the GPU is free for other work: kernels run on the processor"]
+        else [f"               the GPU with --device cuda or auto ({gpus[0].name})"]
     )
+    return ["", f"simulate       {cpu}", *gpu, f"measure        {cpu}"]

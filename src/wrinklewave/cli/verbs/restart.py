@@ -7,12 +7,14 @@ from typing import Annotated
 
 import typer
 
-from wrinklewave.cli.verbs.simulate import AllBulk, Threads
+from wrinklewave.cli.verbs.simulate import AllBulk, Device, Threads
 
 RunDir = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the run.")]
 
 
-def restart(folder: RunDir, threads: Threads = None, all_bulk: AllBulk = False) -> None:
+def restart(
+    folder: RunDir, threads: Threads = None, device: Device = "cpu", all_bulk: AllBulk = False
+) -> None:
     """Go on with a run from its last checkpoint; the result is that of a run that was never stopped."""
     from wrinklewave.cli.verbs.simulate import run_and_present
     from wrinklewave.config import load_case
@@ -23,6 +25,5 @@ def restart(folder: RunDir, threads: Threads = None, all_bulk: AllBulk = False) 
         raise InputError(
             "holds no run", file=folder, expected="the folder of an earlier run, with its case.toml"
         )
-    run_and_present(
-        load_case(case_file), folder, threads=threads, resume=True, overwrite=False, all_bulk=all_bulk
-    )
+    where = {"threads": threads, "device": device}
+    run_and_present(load_case(case_file), folder, where, resume=True, overwrite=False, all_bulk=all_bulk)

@@ -33,6 +33,12 @@ Threads = Annotated[
     int | None,
     typer.Option("--threads", metavar="N", help="Default: all cores. Results do not depend on it."),
 ]
+Device = Annotated[
+    str,
+    typer.Option(
+        "--device", metavar="cpu|cuda|auto", help="Where to step; auto takes the GPU if there is one."
+    ),
+]
 Resume = Annotated[
     bool, typer.Option("--resume", help="Go on from the last checkpoint in DIR, if there is one.")
 ]
@@ -50,6 +56,7 @@ def simulate(
     case: CaseFile,
     out: Out = None,
     threads: Threads = None,
+    device: Device = "cpu",
     overrides: Overrides = None,
     resume: Resume = False,
     overwrite: Overwrite = False,
@@ -60,13 +67,17 @@ def simulate(
 
     loaded = load_case(case, overrides or ())
     folder = out or Path("runs") / case.stem
-    run_and_present(loaded, folder, threads=threads, resume=resume, overwrite=overwrite, all_bulk=all_bulk)
+    where = {"threads": threads, "device": device}
+    run_and_present(loaded, folder, where, resume=resume, overwrite=overwrite, all_bulk=all_bulk)
 
 
 def run_and_present(
-    case: Case, folder: Path, *, threads: int | None, resume: bool, overwrite: bool, all_bulk: bool
+    case: Case, folder: Path, where: dict[str, Any], *, resume: bool, overwrite: bool, all_bulk: bool
 ) -> None:
-    """Run a case in ``folder`` and show what came out; exit code 130 if it was interrupted."""
+    """Run a case in ``folder`` and show what came out; exit code 130 if it was interrupted.
+
+    ``where`` are the threads and the device, as :func:`wrinklewave.simulate` takes them.
+    """
     from wrinklewave.cli.console import console
     from wrinklewave.cli.progress import simulation_progress
     from wrinklewave.experiments.bulk_choices import other_bulk_choices
@@ -77,9 +88,7 @@ def run_and_present(
 
     out = console()
     with simulation_progress(case.name) as progress:
-        run = run_case(
-            case, out=folder, threads=threads, resume=resume, overwrite=overwrite, progress=progress
-        )
+        run = run_case(case, out=folder, **where, resume=resume, overwrite=overwrite, progress=progress)
     if run.outcome is not Outcome.FINISHED:
         out.print(f"{run.outcome.value}: wrinklewave restart {folder}")
         raise typer.Exit(130)
@@ -87,7 +96,7 @@ def run_and_present(
     if all_bulk:
         with simulation_progress(f"{case.name}, other bulk responses") as progress:
             summaries = other_bulk_choices(
-                run, threads=threads, resume=resume, progress=lambda choice, state: progress(state)
+                run, **where, resume=resume, progress=lambda choice, state: progress(state)
             )
     rows = compare_with_paper(run, summaries)
     present(run, rows)

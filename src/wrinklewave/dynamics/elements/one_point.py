@@ -18,26 +18,24 @@ HOURGLASS_STIFFNESS = 7.0 / 72.0
 
 
 @scalar
-def hourglass_shape(d12, d43):
-    """Hourglass component of a nodal field, value_1 - value_2 + value_3 - value_4, from its edge differences."""
-    return d12 - d43
+def hourglass_stiffness(x13, y13, x24, y24, inverse, factor):
+    """Stiffness [m⁰] per shear modulus of the hourglass field; ``inverse`` is 1 / twice the area.
+
+    A (gx + gy) is the sum of the squared diagonals over twice the area.
+    """
+    return factor * HOURGLASS_STIFFNESS * ((x13 * x13 + y13 * y13) + (x24 * x24 + y24 * y24)) * inverse
 
 
 @scalar
-def hourglass_stiffness(b1x, b1y, b2x, b2y, A, factor):
-    """Stiffness [m⁰] per shear modulus of the hourglass field."""
-    return factor * HOURGLASS_STIFFNESS * 2.0 * A * (b1x * b1x + b1y * b1y + b2x * b2x + b2y * b2y)
-
-
-@scalar
-def nodal_forces(b1x, b1y, b2x, b2y, T1, T2, hX, hY, Q):
+def nodal_forces(x13, y13, x24, y24, inverse, T1, T2, hX, hY, Q):
     """Internal forces of one direction on nodes 1 to 4.
 
-    T1, T2 are the nominal stress components of that direction times the area, Q the hourglass force; hX, hY the
-    hourglass components of the coordinates, which make the hourglass field blind to uniform gradients.
+    T1, T2 are half the nominal stress components of that direction, Q the hourglass force; hX, hY the hourglass
+    components of the coordinates, which make the hourglass field blind to uniform gradients.
     """
-    T1 -= hX * Q
-    T2 -= hY * Q
-    f1 = b1x * T1 + b1y * T2
-    f2 = b2x * T1 + b2y * T2
+    R = Q * inverse
+    T1 -= hX * R
+    T2 -= hY * R
+    f1 = y24 * T1 - x24 * T2
+    f2 = x13 * T2 - y13 * T1
     return f1 + Q, f2 - Q, Q - f1, -f2 - Q

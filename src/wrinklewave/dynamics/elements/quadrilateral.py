@@ -8,26 +8,30 @@ from wrinklewave._jit import scalar
 
 
 @scalar
-def centre_gradients(x13, y13, x24, y24):
-    """Shape-function gradients at the centre, and the area (Flanagan & Belytschko 1981, eq. 23).
+def opposite_differences(v1, v2, v3, v4):
+    """d13 and d24 of a nodal field, and its hourglass component."""
+    return v1 - v3, v2 - v4, (v1 + v3) - (v2 + v4)
 
-    Returns b1x, b1y, b2x, b2y [1/m] and A [m²]; the gradients of nodes 3 and 4 are those of 1 and 2, negated.
+
+@scalar
+def twice_area(x13, y13, x24, y24):
+    """Cross product of the diagonals [m²]."""
+    return x13 * y24 - x24 * y13
+
+
+@scalar
+def twice_area_rate(x13, y13, x24, y24, vx13, vy13, vx24, vy24):
+    """Rate of :func:`twice_area` [m²/s] from the diagonals and their velocities."""
+    return (vx13 * y24 - vx24 * y13) + (x13 * vy24 - x24 * vy13)
+
+
+@scalar
+def centre_gradient(x13, y13, x24, y24, inverse, d13, d24):
+    """Gradient at the centre of a nodal field, from its diagonal differences (Flanagan & Belytschko 1981, eq. 23).
+
+    ``inverse`` is 1 / twice the area.
     """
-    A2 = x13 * y24 - x24 * y13
-    i = 1.0 / A2
-    return y24 * i, -x24 * i, -y13 * i, x13 * i, 0.5 * A2
-
-
-@scalar
-def gradient(b1x, b1y, b2x, b2y, d13, d24):
-    """Gradient at the centre of a nodal field, from its diagonal differences."""
-    return b1x * d13 + b2x * d24, b1y * d13 + b2y * d24
-
-
-@scalar
-def volume_rate(F11, F12, F21, F22, V11, V12, V21, V22, Ji):
-    """Rate of volume per volume, F⁻ᵀ : Ḟ [1/s], with V = Ḟ and Ji = 1/J."""
-    return (F22 * V11 + F11 * V22 - F12 * V21 - F21 * V12) * Ji
+    return (y24 * d13 - y13 * d24) * inverse, (x13 * d24 - x24 * d13) * inverse
 
 
 @scalar

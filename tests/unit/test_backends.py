@@ -1,0 +1,83 @@
+"""Processor and GPU do the same: one set of runs, one test body. Without a GPU, numba simulates one."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from support.backend_runs import EVENTS, MODELS, SHEAR
+from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, WORK, position
+from wrinklewave.environment import gpus
+
+TESTS = Path(__file__).parents[1]
+SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
+AGREEMENT = 1e-11
+"""Relative to the largest value: rounding, in another order on each device, grown over a hundred steps at most."""
+STATE = ("u", "w", "vx", "vy", "memory", "fields", "totals")
+EXACT = ("step", "time_s")
+
+Runs = dict[str, np.ndarray]
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory) -> dict[str, Runs]:
+    """Results of all runs, by device."""
+    pytest.importorskip("numba_cuda")
+    found = {}
+    for device in ("cpu", "cuda"):
+        file = tmp_path_factory.mktemp("runs") / f"{device}.npz"
+        simulated = SIMULATED if device == "cuda" and isinstance(gpus(), str) else {}
+        path = os.pathsep.join([str(TESTS), str(TESTS.parent / "src"), os.environ.get("PYTHONPATH", "")])
+        command = [sys.executable, "-m", "support.backend_runs", device, str(file)]
+        subprocess.run(command, env=os.environ | {"PYTHONPATH": path} | simulated, check=True)
+        with np.load(file) as data:
+            found[device] = dict(data)
+    return found
+
+
+def of(runs: Runs, name: str) -> Runs:
+    return {key.partition("/")[2]: values for key, values in runs.items() if key.startswith(name + "/")}
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_devices_agree(runs, name):
+    cpu, cuda = of(runs["cpu"], name), of(runs["cuda"], name)
+    assert cpu.keys() == cuda.keys()
+    for key in EXACT:
+        assert cuda[key] == pytest.approx(cpu[key], rel=1e-14)
+    for key in STATE:
+        scale = np.abs(cpu[key]).max()
+        assert scale > 0
+        assert np.abs(cuda[key] - cpu[key]).max() <= AGREEMENT * scale, key
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_histories_agree(runs, name):
+    cpu, cuda = of(runs["cpu"], name), of(runs["cuda"], name)
+    energy = max(cpu[key].max() for key in cpu if key.endswith("_J_per_m"))
+    for key in set(cpu) - set(STATE) - set(EXACT):
+        scale = energy if key.endswith("_J_per_m") else np.abs(cpu[key]).max()
+        assert np.abs(cuda[key] - cpu[key]).max() <= AGREEMENT * scale, key
+
+
+@pytest.mark.parametrize("device", ["cpu", "cuda"])
+def test_restart_changes_no_bit(runs, device):
+    whole, restarted = of(runs[device], "struck"), of(runs[device], "restarted")
+    assert all(np.array_equal(whole[key], restarted[key]) for key in whole)
+
+
+@pytest.mark.parametrize("device", ["cpu", "cuda"])
+def test_runs_show_what_they_are_for(runs, device):
+    struck, grooved = of(runs[device], "struck")["totals"], of(runs[device], "grooved")["totals"]
+    assert struck[FORCE] > 0
+    assert struck[WORK] > 0
+    assert struck[FRICTION_LOSS] > 0
+    assert grooved[CONTACT_LOSS] != 0  # its lips have touched
+    sheared = of(runs[device], "sheared")
+    assert sheared["w"][-1, 0] == pytest.approx(position(SHEAR, EVENTS[-1]))  # as its history says
+    straight = of(runs[device], "bilayer")["w"][:, 0]
+    assert straight[-1] > 0
+    assert straight == pytest.approx(straight[-1] * np.arange(5) / 4)
