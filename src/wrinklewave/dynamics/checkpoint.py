@@ -19,7 +19,8 @@ if TYPE_CHECKING:
     from wrinklewave.dynamics.simulation import Simulation
 
 STATE = ("u", "w", "vx", "vy", "factors")
-COUNTERS = ("next_event", "step", "dt", "first_dt", "power_time", "stepping_seconds")
+WHOLE = ("next_event", "step", "last_step", "patience")
+COUNTERS = (*WHOLE, "dt", "first_dt", "last_dt", "power_time", "stepping_seconds")
 SUMS = ("totals", "work", "power")
 
 
@@ -71,7 +72,7 @@ def read_checkpoint(path: Path, simulation: Simulation, case_text: str) -> Recor
             )
         for name in COUNTERS:
             value = file.attrs[name]
-            setattr(simulation, name, int(value) if name in ("next_event", "step") else float(value))
+            setattr(simulation, name, int(value) if name in WHOLE else float(value))
         for name in SUMS:
             getattr(simulation, name)[:] = file[f"sums/{name}"][()]
         for name in STATE:

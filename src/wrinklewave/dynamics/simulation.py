@@ -1,4 +1,4 @@
-"""A model in time: from event to event, with the stable step re-estimated at each, and the energies followed."""
+"""A model in time: from event to event, with the stable step estimated anew on the way, and the energies followed."""
 
 from __future__ import annotations
 
@@ -54,6 +54,10 @@ overstress, of which ``springs`` is stored still and the rest dissipated."""
 
 SMALLEST_STEP = 1e-3
 """A run stops when the stable step falls below this fraction of the first: elements are collapsing."""
+SHRINKAGE = 0.05
+"""The stable step is estimated anew before it can have shrunk by this part, as far as the last estimates tell."""
+FEWEST_STEPS, MOST_STEPS = 4, 64
+"""Steps between two estimates: at the start, and at most."""
 
 
 @dataclass(frozen=True)
@@ -82,6 +86,10 @@ class Simulation:
     step: int = 0
     dt: float = 0.0
     first_dt: float = 0.0
+    last_dt: float = 0.0
+    last_step: int = 0
+    patience: int = FEWEST_STEPS
+    reached: float = 0.0
     totals: NDArray[np.float64] = field(default_factory=lambda: np.zeros(N_TOTALS))
     work: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     power: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
@@ -146,16 +154,31 @@ class Simulation:
         return dt
 
     def _go(self, start: float, stop: float) -> None:
-        n = int(np.ceil((stop - start) / (self.safety * self.stable_step())))
-        dt = float(stop - start) / n
-        group = max(1, int(self.history_interval / dt))
-        done = 0
-        for sample in self.backend.march(n, group, float(start), self.dt, dt, self.totals):
+        t = start
+        while t < stop:
+            n = int(np.ceil((stop - t) / (self.safety * self._next_stable_step())))
+            dt, count = float(stop - t) / n, min(n, self.patience)
+            self._march(count, t, dt)
+            t = stop if count == n else t + count * dt
+
+    def _march(self, n: int, start: float, dt: float) -> None:
+        group, done = max(1, int(self.history_interval / dt)), 0
+        for sample in self.backend.march(n, group, start, self.dt, dt, self.totals):
             done += sample.steps
             self.step += sample.steps
             self.stepping_seconds += sample.seconds
             self.dt = dt
-            self._record(float(start) + done * dt, dt, sample)
+            self.reached = start + done * dt
+            self._record(self.reached, dt, sample)
+
+    def _next_stable_step(self) -> float:
+        """The stable step now; how fast it shrinks tells how many steps later it is to be asked for again."""
+        dt, taken = self.stable_step(), self.step - self.last_step
+        shrunk = max(1 - dt / (self.last_dt or dt), 1e-9)
+        allowed = min(taken * SHRINKAGE / shrunk, MOST_STEPS) if taken else FEWEST_STEPS
+        self.patience = max(1, int(min(allowed, max(self.patience, 2 * taken))))
+        self.last_dt, self.last_step = dt, self.step
+        return dt
 
     def _record(self, t: float, dt: float, sample: Sample) -> None:
         a, rows = self.model.arrays, sample.survey
@@ -208,7 +231,7 @@ class Simulation:
         if np.isnan(dt):
             what = "the state is not finite"
         return RunError(
-            f"{what} (element row {row}, column {column}, at {place}; t = {self.time * 1e3:.4f} ms, step {self.step}, "
+            f"{what} (element row {row}, column {column}, at {place}; t = {max(self.time, self.reached) * 1e3:.4f} ms, step {self.step}, "
             f"stable step {dt:.3g} s)\n"
             "  to mend:  a smaller solver.safety, a longer rise time, a coarser mesh at a clamped struck corner "
             "(no converged answer exists there), or boundaries.wall = true"

@@ -3,10 +3,16 @@
 Highest frequency of an element (upper bound): the eigenvalues of its stiffness for uniform strain follow from the
 Gram matrix of the current shape-function gradients, gx and gy its eigenvalues:
 
-    omega² = 4 J/rho · max{ [M (gx + gy) + sqrt(M² (gx - gy)² + 4 lambda² gx gy)]/2,  mu (gx + gy) }
+    omega² = 4 J/rho · max{ [M (gx + gy) + sqrt(M² (gx - gy)² + 4 lambda² gx gy)]/2,  G (gx + gy) }
 
-with current moduli of the compressible neo-Hookean law per current volume: mu -> mu_i J^(-5/3) times the largest
-principal stretch squared, K -> K_i (2 J - 1). Bulk viscosity shortens the step by sqrt(1 + xi²) - xi.
+with moduli of the compressible neo-Hookean law per current volume. Under the mean stress p = K (J - 1) the second
+variation of K (J - 1)²/2 in a uniform displacement gradient L is K J (tr L)² + 2 p det L, so with mu = mu_i J^(-5/3)
+times the largest principal stretch squared
+
+    M = K_i J + 4/3 mu,   lambda = K_i J + max(p, 0) - 2/3 mu,   G = mu + |p|,   p = K_i (J - 1),
+
+where a bulk modulus that has relaxed leaves any p between 0 and K_i (J - 1). Bulk viscosity shortens the step by
+sqrt(1 + xi²) - xi.
 """
 
 from __future__ import annotations
@@ -38,10 +44,10 @@ def element_step(X, Y, u, w, vx, vy, mu_i, K_i, linear, quadratic, rho):
     stretch2 = 0.5 * trace + math.sqrt(max(0.25 * trace * trace - J * J, 0.0))
     root = inverse_cube_root(J)
     mu = mu_i * max(stretch2, 1.0) * root * root * root * root * root
-    K = K_i * max(2.0 * J - 1.0, 0.5)
-    M, lam = K + 4.0 / 3.0 * mu, K - 2.0 / 3.0 * mu
+    p = K_i * (J - 1.0)
+    M, lam, G = K_i * J + 4.0 / 3.0 * mu, K_i * J + max(p, 0.0) - 2.0 / 3.0 * mu, mu + abs(p)
     along = 0.5 * (M * (gx + gy) + math.sqrt(M * M * (gx - gy) * (gx - gy) + 4.0 * lam * lam * gx * gy))
-    omega2 = 4.0 * J / rho * max(along, mu * (gx + gy))
+    omega2 = 4.0 * J / rho * max(along, G * (gx + gy))
     rate = dot(bx, vx) + dot(by, vy)
     L2 = squared_length(X[0] - X[2], Y[0] - Y[2], X[1] - X[3], Y[1] - Y[3], area(X, Y))
     damping = linear * math.sqrt(L2) - quadratic * L2 * min(rate, 0.0)
