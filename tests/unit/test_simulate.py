@@ -62,6 +62,7 @@ def test_run_leaves_its_files(run):
         "fields.vtkhdf",
         "history.csv",
         "boundary.csv",
+        "probes.csv",
         "summary.json",
     }
 
@@ -94,6 +95,38 @@ def test_history_keeps_all_digits(run):
     with (run.folder / "history.csv").open() as stream:
         rows = list(csv.DictReader(stream))
     assert [float(row["kinetic_J_per_m"]) for row in rows] == run.history["kinetic_J_per_m"].tolist()
+
+
+def test_probes_follow_material_points(run):
+    table = np.genfromtxt(run.folder / "probes.csv", delimiter=",", names=True)
+    probes = run.case.output.probes
+    assert np.unique(table["X_m"]) == pytest.approx(probes)
+    for X in probes:
+        rows = table[np.isclose(table["X_m"], X)]
+        assert rows["time_s"] == pytest.approx(run.surface.time.values)
+        for column, name in (("x_m", "x_p"), ("y_m", "y_p"), ("strain_xx", "strain_xx")):
+            found = [np.interp(X, run.surface.X, values) for values in run.surface[name].values]
+            assert rows[column] == pytest.approx(found, rel=1e-12)
+
+
+def test_replacing_a_run_leaves_nothing_of_the_old_one(case, tmp_path):
+    simulate(case, out=tmp_path)
+
+    def interrupt(state):
+        signal.raise_signal(signal.SIGINT)
+
+    simulate(case, out=tmp_path, overwrite=True, progress=interrupt)
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {"case.toml", "checkpoint.h5", ".frames", "history.csv", "summary.json"}
+
+
+def test_outputs_far_apart_do_not_make_the_step_too_long(case):
+    # an element is squeezed by a third between two outputs, and its stable step with it
+    rare = case.overridden(
+        "output.surface_interval=0.15 ms", "output.field_interval=0.5 ms", "output.history_interval=0.5 ms"
+    )
+    often, seldom = simulate(case), simulate(rare)
+    assert seldom.surface.y_p.values[-1] == pytest.approx(often.surface.y_p.values[-1], rel=5e-3)
 
 
 def test_paraview_reads_the_fields(run):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from support.cases import BULK_RESPONSES, impact, paper_impact
+from support.cases import BULK_RESPONSES, impact
 from support.ledger import Verified, order
 from support.models import (
     ELEMENTS,
@@ -177,15 +177,3 @@ def test_energy_balance_of_an_impact(element: str, bulk: str, verified: Verified
     h = history(simulation)
     imbalance = np.abs(h["imbalance_J_per_m"]).max() / np.abs(h["external_work_J_per_m"]).max()
     verified.error(f"energy imbalance over work, coarse impact, K {bulk}, {element}", float(imbalance), 1e-3)
-
-
-@pytest.mark.paper_size
-@pytest.mark.parametrize("element", ELEMENTS)
-@pytest.mark.parametrize("bulk", BULK_RESPONSES)
-def test_energy_balance_of_the_paper_case(element: str, bulk: str, verified: Verified) -> None:
-    run = paper_impact(element, bulk)
-    verified.error(
-        f"energy imbalance over work, paper case, K {bulk}, {element}",
-        run.summary["energy_imbalance_max"],
-        1e-3,
-    )

@@ -89,9 +89,6 @@ class Solver(Section):
     bulk_viscosity: Annotated[
         tuple[NotNegative, NotNegative], Field(description="linear and quadratic coefficient")
     ] = (0.06, 1.2)
-    precision: Annotated[
-        Literal["float64", "float32"], Field(description="of the state and the arithmetic")
-    ] = "float64"
     checkpoint_interval: Annotated[PositiveTime, Field(description="wall-clock time between checkpoints")] = (
         60.0
     )
@@ -106,7 +103,9 @@ class Output(Section):
     surface_interval: Annotated[PositiveTime, Field(description="between frames of surface.nc")]
     field_interval: Annotated[PositiveTime, Field(description="between frames of fields.vtkhdf")]
     history_interval: Annotated[PositiveTime, Field(description="between rows of history.csv")]
-    probes: Annotated[tuple[NotNegativeLength, ...], Field(description="undeformed x of surface points")] = ()
+    probes: Annotated[
+        tuple[NotNegativeLength, ...], Field(description="undeformed x of the surface points in probes.csv")
+    ] = ()
     pixel_size: Annotated[PositiveLength, Field(description="laboratory grid of the surface motion")]
 
 

@@ -139,6 +139,10 @@ def _times(case: Case) -> Iterator[InputError]:
         if time > end * (1 + ROUNDING):
             problem = f"{_ms(time)} is beyond the end of the run at {_ms(end)}"
             yield _error(key, problem, "at most solver.end_time", "lower it, or raise solver.end_time")
+    interval = case.output.surface_interval
+    if end / 3 * (1 + ROUNDING) < interval <= end * (1 + ROUNDING):
+        problem = f"{_ms(interval)} gives fewer than four frames until the end of the run at {_ms(end)}"
+        yield _error("output.surface_interval", problem, "at most a third of solver.end_time", "lower it")
 
 
 def _places(case: Case) -> Iterator[InputError]:

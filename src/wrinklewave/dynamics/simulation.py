@@ -227,11 +227,12 @@ class Simulation:
     def _failure(self, row: int, column: int, dt: float) -> RunError:
         X, Y = self.model.arrays.X, self.model.arrays.Y
         place = f"X = {X[row, column] * 1e3:.3f} mm, Y = {Y[row, column] * 1e3:.3f} mm"
+        t = max(self.time, self.reached)
         what = "the stable step has collapsed: an element is inverted or nearly so"
         if np.isnan(dt):
             what = "the state is not finite"
         return RunError(
-            f"{what} (element row {row}, column {column}, at {place}; t = {max(self.time, self.reached) * 1e3:.4f} ms, step {self.step}, "
+            f"{what} (element row {row}, column {column}, at {place}; t = {t * 1e3:.4f} ms, step {self.step}, "
             f"stable step {dt:.3g} s)\n"
             "  to mend:  a smaller solver.safety, a longer rise time, a coarser mesh at a clamped struck corner "
             "(no converged answer exists there), or boundaries.wall = true"

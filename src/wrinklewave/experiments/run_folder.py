@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from wrinklewave import surface
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.boundary_history import boundary_columns
+from wrinklewave.experiments.probes import probe_columns
 from wrinklewave.experiments.vtkhdf import write_vtkhdf
 
 if TYPE_CHECKING:
@@ -20,6 +21,17 @@ if TYPE_CHECKING:
 
     from wrinklewave.config import Case
     from wrinklewave.experiments.simulate import Run
+
+RESULTS = (
+    "surface.nc",
+    "boundary.csv",
+    "probes.csv",
+    "fields.vtkhdf",
+    "history.csv",
+    "summary.json",
+    "comparison.json",
+    "report.html",
+)
 
 
 @dataclass(frozen=True)
@@ -76,16 +88,19 @@ class RunFolder:
         assert run.surface is not None  # a finished run has one
         surface.write(run.surface, self.path / "surface.nc")
         write_history(self.path / "boundary.csv", boundary_columns(run.surface))
+        if run.case.output.probes:
+            write_history(self.path / "probes.csv", probe_columns(run.surface, run.case.output.probes))
         write_vtkhdf(self.path / "fields.vtkhdf", run.mesh, run.fields)
         self.write_unfinished(run)
         self.checkpoint.unlink(missing_ok=True)
         run.fields.remove()
 
     def _clear(self) -> None:
-        self.checkpoint.unlink(missing_ok=True)
-        (self.path / "summary.json").unlink(missing_ok=True)
-        for frame in self.frames.glob("*"):
-            frame.unlink()
+        """Remove what an earlier run has left, so that nothing of it stands beside the new case."""
+        for name in (self.checkpoint.name, *RESULTS):
+            (self.path / name).unlink(missing_ok=True)
+        for file in (*self.frames.glob("*"), *(self.path / "figures").glob("*.png")):
+            file.unlink()
 
 
 def write_text(path: Path, text: str) -> None:
