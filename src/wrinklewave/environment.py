@@ -63,6 +63,10 @@ class Gpu:
     memory: int
 
 
+SIMULATOR = Gpu("numba's simulator (NUMBA_ENABLE_CUDASIM)", (0, 0), 0)
+"""Runs kernels as Python: for tests on small meshes."""
+
+
 @dataclass(frozen=True)
 class Threading:
     """How kernels run on several cores.
@@ -108,13 +112,24 @@ def gpus() -> list[Gpu] | str:
     if version_of("numba-cuda") == "missing":
         return 'numba-cuda is not installed: pip install "wrinklewave[cuda]"'
     try:
-        from numba import cuda
+        from numba import config, cuda
 
+        if config.ENABLE_CUDASIM:  # type: ignore[attr-defined]  # made when numba is imported
+            return [SIMULATOR]
         if not cuda.is_available():
             return "no CUDA driver or no device"
+        require_cuda_compilers()
         return [_gpu(device) for device in cuda.gpus]
     except Exception as error:  # a broken driver raises whatever it likes; doctor is there to say so
         return f"CUDA does not start: {type(error).__name__}: {error}".splitlines()[0]
+
+
+def require_cuda_compilers() -> None:
+    """Raise whatever numba-cuda raises where it finds no compilers for GPUs."""
+    from numba.cuda.cudadrv import nvrtc, nvvm
+
+    nvvm.NVVM()
+    nvrtc.get_supported_ccs()
 
 
 def choose_device(wish: str) -> Device:

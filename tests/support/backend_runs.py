@@ -13,13 +13,15 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from support.models import Array, build, distorted, elastic, history, relaxing
+from support.cases import EXAMPLES
+from support.models import K_0, MU_0, MU_1, RHO, TAU, Array, build, distorted, elastic, history, relaxing
 from wrinklewave.dynamics.backends import Device
 from wrinklewave.dynamics.boundary import (
     FIXED,
     FREE,
     LEFT_HELD,
     LEFT_LINEAR,
+    LEFT_MOVED,
     LEFT_STRAIGHT,
     LEFT_STRUCK,
     ROLLER,
@@ -29,6 +31,8 @@ from wrinklewave.dynamics.checkpoint import Record, read_checkpoint, write_check
 from wrinklewave.dynamics.drives import cubic_segments
 from wrinklewave.dynamics.model import AT_REST, Model, assemble
 from wrinklewave.dynamics.simulation import Simulation
+from wrinklewave.experiments.simulate import simulate
+from wrinklewave.materials.moduli import Viscoelastic
 from wrinklewave.mesh.block import GridMesh
 
 EVENTS = np.array([0.0, 0.4e-4, 1e-4])
@@ -83,14 +87,15 @@ def grooved() -> Model:
 
 
 def bilayer() -> Model:
-    """Two materials with terms of their own, the stiff one ending early, under an end that moves and stays straight."""
+    """Two materials, one with two Prony terms; the stiff one ends early; under an end that moves and stays straight."""
     mesh = distorted(6, 4, seed=1)
     layer = mesh.layer.copy()
     layer[-1, :4] = 1
     boundary = Boundary(
         LEFT_STRAIGHT, ROLLER, FREE, ROLLER, True, 6e-3, 0.0, PUSH, AT_REST, np.zeros((3, 4, 7))
     )
-    return assemble(GridMesh(mesh.X, mesh.Y, layer), [relaxing(bulk=False), elastic(mu=4e5, K=2e6)], boundary)
+    soft = Viscoelastic(RHO, MU_0, K_0, np.array([MU_1, MU_0]), np.zeros(2), np.array([TAU, 10 * TAU]))
+    return assemble(GridMesh(mesh.X, mesh.Y, layer), [soft, elastic(mu=4e5, K=2e6)], boundary)
 
 
 def sheared() -> Model:
@@ -100,7 +105,16 @@ def sheared() -> Model:
     return assemble(mesh, [relaxing(bulk=True)], boundary, one_point=False)
 
 
-MODELS: dict[str, Callable[[], Model]] = {f.__name__: f for f in (struck, grooved, bilayer, sheared)}
+def compressed() -> Model:
+    """A whole block, made heavy, pressed along x only; its surfaces are free."""
+    mesh = distorted(6, 4, seed=3)
+    boundary = Boundary(LEFT_MOVED, FIXED, FREE, FREE, True, 6e-3, 0.0, PUSH, AT_REST, np.zeros((3, 4, 7)))
+    return assemble(mesh, [relaxing(bulk=False)], boundary, mass_scaling=4.0)
+
+
+MODELS: dict[str, Callable[[], Model]] = {
+    f.__name__: f for f in (struck, grooved, bilayer, sheared, compressed)
+}
 
 
 def run(model: Model, device: Device) -> dict[str, Array]:
@@ -127,6 +141,16 @@ def restarted(device: Device) -> dict[str, Array]:
     return results(second)
 
 
+def from_case(device: Device) -> dict[str, Array]:
+    """A case file in a handful of elements, as the command line runs it: history and surface motion."""
+    choices = ("mesh.elements=[6, 3]", "solver.end_time=0.2 ms", "output.surface_interval=0.05 ms")
+    done = simulate(EXAMPLES / "quick.toml", device=device, threads=1, overrides=choices)
+    assert done.summary["device"] == device
+    surface = done.surface
+    assert surface is not None  # the run has finished
+    return done.history | {name: surface[name].values for name in ("x_p", "y_p", "strain_xx")}
+
+
 def results(simulation: Simulation) -> dict[str, Array]:
     """What a run leaves behind, by name."""
     simulation.backend.fetch_all()
@@ -140,7 +164,8 @@ def main(device: Device, file: str) -> None:
     sys.setswitchinterval(
         1e-4
     )  # the simulator's threads wait for each other far more often than they compute
-    runs = {name: run(model(), device) for name, model in MODELS.items()} | {"restarted": restarted(device)}
+    runs = {name: run(model(), device) for name, model in MODELS.items()}
+    runs |= {"restarted": restarted(device), "from_case": from_case(device)}
     np.savez(
         file, **{f"{name}/{key}": values for name, found in runs.items() for key, values in found.items()}
     )

@@ -1,5 +1,6 @@
 """Processor and GPU do the same: one set of runs, one test body. Without a GPU, numba simulates one."""
 
+import json
 import os
 import subprocess
 import sys
@@ -22,6 +23,21 @@ EXACT = ("step", "time_s")
 Runs = dict[str, np.ndarray]
 
 
+def environment() -> dict[str, str]:
+    path = os.pathsep.join([str(TESTS), str(TESTS.parent / "src"), os.environ.get("PYTHONPATH", "")])
+    return os.environ | {"PYTHONPATH": path}
+
+
+def can_compile() -> bool:
+    """Whether numba can compile for a GPU, be there one or not; asked elsewhere, to leave this process alone."""
+    command = [
+        sys.executable,
+        "-c",
+        "from wrinklewave.environment import require_cuda_compilers as f; f()",
+    ]
+    return subprocess.run(command, env=environment(), capture_output=True, check=False).returncode == 0
+
+
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory) -> dict[str, Runs]:
     """Results of all runs, by device."""
@@ -30,9 +46,8 @@ def runs(tmp_path_factory) -> dict[str, Runs]:
     for device in ("cpu", "cuda"):
         file = tmp_path_factory.mktemp("runs") / f"{device}.npz"
         simulated = SIMULATED if device == "cuda" and isinstance(gpus(), str) else {}
-        path = os.pathsep.join([str(TESTS), str(TESTS.parent / "src"), os.environ.get("PYTHONPATH", "")])
         command = [sys.executable, "-m", "support.backend_runs", device, str(file)]
-        subprocess.run(command, env=os.environ | {"PYTHONPATH": path} | simulated, check=True)
+        subprocess.run(command, env=environment() | simulated, check=True)
         with np.load(file) as data:
             found[device] = dict(data)
     return found
@@ -54,13 +69,30 @@ def test_devices_agree(runs, name):
         assert np.abs(cuda[key] - cpu[key]).max() <= AGREEMENT * scale, key
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", [*MODELS, "from_case"])
 def test_histories_agree(runs, name):
     cpu, cuda = of(runs["cpu"], name), of(runs["cuda"], name)
     energy = max(cpu[key].max() for key in cpu if key.endswith("_J_per_m"))
     for key in set(cpu) - set(STATE) - set(EXACT):
         scale = energy if key.endswith("_J_per_m") else np.abs(cpu[key]).max()
         assert np.abs(cuda[key] - cpu[key]).max() <= AGREEMENT * scale, key
+
+
+def test_kernels_compile_for_a_gpu(tmp_path):
+    """All that the backend launches, for one Prony term and for many, without a spilled register."""
+    pytest.importorskip("numba_cuda")
+    if not can_compile():
+        pytest.skip("no libNVVM or NVRTC: numba-cuda[cu13] brings them")
+    file = tmp_path / "kernels.json"
+    subprocess.run([sys.executable, "-m", "support.cuda_targets", str(file)], env=environment(), check=True)
+    found = json.loads(file.read_text())
+    kernels = {"steps", "sample", "march", "fields", "stable_steps"}
+    assert {name: set(of_model) for name, of_model in found.items()} == {
+        "struck": kernels,
+        "many_terms": kernels,
+    }
+    resources = [of_kernel for of_model in found.values() for of_kernel in of_model.values()]
+    assert not any(of_kernel.get("spilled") for of_kernel in resources)
 
 
 @pytest.mark.parametrize("device", ["cpu", "cuda"])

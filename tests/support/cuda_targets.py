@@ -1,0 +1,137 @@
+"""CUDA kernels compiled for a device that is not there: what numba's simulator cannot see.
+
+``python -m support.cuda_targets FILE.json`` in a process of its own. The backend works on arrays that only look like
+those of a device, and every kernel that it launches is compiled for the types that it is launched with. Needs libNVVM,
+as ``pip install "numba-cuda[cu13]"`` brings it; with ``ptxas`` (package nvidia-cuda-nvcc) it also says how many
+registers a kernel takes, and how many bytes it spills.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+from numba import cuda
+from numba.cuda import dispatcher, types
+from numba.cuda.typing.typeof import typeof
+
+from support.backend_runs import MODELS
+from support.models import build, distorted
+from wrinklewave.dynamics.boundary import N_TOTALS
+from wrinklewave.dynamics.cuda import backend, kernels
+from wrinklewave.dynamics.model import Model
+from wrinklewave.materials.moduli import Viscoelastic
+
+CAPABILITY = (9, 0)
+FEW, MANY = 0, 1000
+"""Multiprocessors: the mesh is too large for one launch, or it fits."""
+
+
+class _Array(np.ndarray):
+    """A host's array with the methods of a device's."""
+
+    def copy_to_host(self, out: np.ndarray | None = None) -> np.ndarray:
+        return np.asarray(self)
+
+    def copy_to_device(self, values: np.ndarray) -> None:
+        self[...] = values
+
+
+def _device_array(shape: tuple[int, ...], dtype: Any = np.float64) -> _Array:
+    return np.zeros(shape, dtype).view(_Array)
+
+
+def _plain(argument: Any) -> Any:
+    """An argument with arrays as numba's typing knows them."""
+    if isinstance(argument, _Array):
+        return np.asarray(argument)
+    if hasattr(argument, "_fields"):
+        return type(argument)(*map(_plain, argument))
+    return tuple(map(_plain, argument)) if isinstance(argument, tuple) else argument
+
+
+class _Compiled:
+    """Stands in for a kernel: a launch compiles it."""
+
+    def __init__(self, kernel: Any, found: dict[str, str]) -> None:
+        self._kernel, self._found = kernel, found
+        self.typeof_pyval = lambda argument: argument
+
+    def __getitem__(self, configuration: Any) -> Callable[..., None]:
+        return self._launch
+
+    def _launch(self, *arguments: Any) -> None:
+        signature = types.void(*(typeof(_plain(argument)) for argument in arguments))
+        name = self._kernel.py_func.__name__
+        if name not in self._found:
+            self._found[name], _ = cuda.compile_ptx(self._kernel.py_func, signature, cc=CAPABILITY)
+
+    def compile(self, signature: Any) -> SimpleNamespace:
+        """What the backend asks before a cooperative launch."""
+        return SimpleNamespace(max_cooperative_grid_blocks=lambda *arguments: 1)
+
+
+def compiled(model: Model) -> dict[str, str]:
+    """PTX of every kernel that steps and reads a model, by name."""
+    found: dict[str, str] = {}
+    for name, kernel in _KERNELS.items():
+        setattr(kernels, name, _Compiled(kernel, found))
+    for multiprocessors in (FEW, MANY):
+        device = SimpleNamespace(MULTIPROCESSOR_COUNT=multiprocessors, compute_capability=CAPABILITY)
+        backend.cuda = SimpleNamespace(  # type: ignore[assignment]
+            to_device=lambda values: np.array(values).view(_Array),
+            device_array=_device_array,
+            get_current_device=lambda device=device: device,
+        )
+        dispatcher.get_current_device = lambda device=device: device
+        stepped = backend.Cuda(model)
+        list(stepped.march(3, 2, 0.0, 0.0, 1e-6, np.zeros(N_TOTALS)))
+        stepped.stable_steps()
+        stepped.fields()
+    return found
+
+
+_KERNELS = {name: getattr(kernels, name) for name in ("steps", "sample", "march", "fields", "stable_steps")}
+
+
+def resources(ptx: str) -> dict[str, int]:
+    """Registers of a kernel and bytes that it spills, as ptxas says; nothing if there is no ptxas."""
+    ptxas = next(Path(sys.prefix).rglob("ptxas"), None) or shutil.which("ptxas")
+    if ptxas is None:
+        return {}
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "kernel.ptx"
+        file.write_text(ptx)
+        command = [str(ptxas), "-arch=sm_90", "-v", "-c", str(file), "-o", str(file.with_suffix(".o"))]
+        said = subprocess.run(command, check=True, capture_output=True, text=True).stderr
+    return {
+        "registers": int(re.findall(r"Used (\d+) registers", said)[0]),
+        "spilled": sum(map(int, re.findall(r"(\d+) bytes spill", said))),
+    }
+
+
+def many_terms() -> Model:
+    """Five Prony terms at four integration points each: the longest list of arguments that is likely."""
+    shares = np.full(5, 1e5)
+    solid = Viscoelastic(965.0, 44e3, 2e6, shares, shares, np.logspace(-6, -2, 5))
+    return build(distorted(4, 3), solid, "mean-dilatation")
+
+
+def main(file: str) -> None:
+    """Compile the kernels of all models."""
+    models = (MODELS["struck"], many_terms)
+    found = {f.__name__: {k: resources(ptx) for k, ptx in compiled(f()).items()} for f in models}
+    Path(file).write_text(json.dumps(found, indent=1))
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
