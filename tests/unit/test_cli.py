@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import signal
@@ -124,9 +125,23 @@ def test_unwritable_file(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     code, _, err = run(capsys, monkeypatch, "theory", str(PAPER), "--json", str(tmp_path / "none" / "x.json"))
-    assert code == 1
-    assert "none/x.json" in err
+    assert code == 2
+    assert "none/x.json: no such file or directory" in err
+    assert "to mend" in err
     assert "Traceback" not in err
+
+
+def test_full_disk_is_a_failure_not_a_mistake(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail() -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "surface.nc")
+
+    app = application()
+    app.command("fail")(fail)
+    monkeypatch.setattr("wrinklewave.cli.application", lambda: app)
+    code, _, err = run(capsys, monkeypatch, "fail")
+    assert (code, err) == (1, "wrinklewave: surface.nc: no space left on device\n")
 
 
 @pytest.mark.parametrize(

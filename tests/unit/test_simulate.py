@@ -186,10 +186,39 @@ def test_checkpoint_of_another_case_is_refused(case, tmp_path):
         simulate(case, out=tmp_path, resume=True, overrides=["drive.velocity=9 m/s"])
 
 
+@pytest.mark.parametrize("damage", ["cut", "emptied"])
+def test_damaged_checkpoint_is_refused(case, tmp_path, damage):
+    def interrupt(state):
+        signal.raise_signal(signal.SIGINT)
+
+    simulate(case, out=tmp_path, progress=interrupt)
+    checkpoint = tmp_path / "checkpoint.h5"
+    if damage == "cut":
+        checkpoint.write_bytes(checkpoint.read_bytes()[:1000])
+    else:
+        with h5py.File(checkpoint, "a") as file:
+            del file["state/memory"]
+    with pytest.raises(InputError, match="cannot be read|damaged"):
+        simulate(case, out=tmp_path, resume=True)
+
+
 def test_run_without_a_folder_keeps_its_fields(case, run):
     free = simulate(case)
     assert len(free.fields) == 6
     assert np.array_equal(free.surface.y, run.surface.y, equal_nan=True)
+
+
+def test_a_filter_that_does_not_suit_the_grid_is_found_before_the_run(case, tmp_path):
+    with pytest.raises(InputError, match=r"filter_wavelength.*samples"):
+        simulate(case, out=tmp_path / "run", overrides=["analysis.filter_wavelength=0.01 mm"])
+    assert not (tmp_path / "run").exists()
+
+
+def test_time_left_comes_from_the_pace_of_the_steps(case):
+    found = []
+    simulate(case, progress=lambda state: found.append((state.time, state.seconds_left)))
+    assert np.isnan([left for _, left in found[:2]]).all()  # at rest, and after the first steps
+    assert found[-1] == (pytest.approx(0.5e-3), 0.0)
 
 
 def test_too_many_threads_is_an_error(case):

@@ -34,16 +34,27 @@ def low_pass(values: ArrayLike, *, spacing: float, cutoff_wavelength: float) -> 
         InputError: if the cut-off is too short for the grid, or too long for double precision.
     """
     values = np.asarray(values, dtype=float)
+    check_cutoff(cutoff_wavelength, spacing)
+    samples = cutoff_wavelength / spacing
+    penalty = (2.0 * np.sin(np.pi / samples)) ** (-2 * ORDER)
+    rows = values.reshape(-1, values.shape[-1])
+    return np.stack([_smooth_row(row, penalty) for row in rows]).reshape(values.shape)
+
+
+def check_cutoff(cutoff_wavelength: float, spacing: float) -> None:
+    """Does the grid suit the filter? Lengths in metres.
+
+    Raises:
+        InputError: if the cut-off is too short for the grid, or too long for double precision.
+    """
     samples = cutoff_wavelength / spacing
     if not 2.0 < samples <= MAX_CUTOFF_IN_SAMPLES:
         raise InputError(
             f"the filter's cut-off of {1e3 * cutoff_wavelength:g} mm is {samples:.4g} samples of the grid",
             key="analysis.filter_wavelength",
             expected=f"more than 2 and at most {MAX_CUTOFF_IN_SAMPLES} samples of {1e3 * spacing:g} mm",
+            cure="change the cut-off, or the grid (output.pixel_size of a simulation)",
         )
-    penalty = (2.0 * np.sin(np.pi / samples)) ** (-2 * ORDER)
-    rows = values.reshape(-1, values.shape[-1])
-    return np.stack([_smooth_row(row, penalty) for row in rows]).reshape(values.shape)
 
 
 def _smooth_row(row: Array, penalty: float) -> Array:

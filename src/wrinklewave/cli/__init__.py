@@ -10,6 +10,7 @@ traceback.
 from __future__ import annotations
 
 import sys
+from errno import EACCES, EEXIST, EISDIR, ENOENT, ENOTDIR, EPERM, EROFS
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Annotated
@@ -23,6 +24,9 @@ from wrinklewave.errors import WrinklewaveError
 ORDER = ("simulate", "restart", "film", "inspect", "measure", "compare", "theory", "doctor", "cite")
 """Verbs as a user meets them; others come after them."""
 
+USERS_MISTAKES = (ENOENT, EACCES, EPERM, EROFS, ENOTDIR, EISDIR, EEXIST)
+"""Errors of the operating system that a wrong path explains; others, such as a full disk, are failures."""
+
 
 def main() -> None:
     """Entry point: run the verb; return 2 for a mistake in the input, 1 for a failure, 130 after Ctrl-C."""
@@ -32,8 +36,8 @@ def main() -> None:
         _fail(str(error), error.exit_code)
     except KeyboardInterrupt:
         _fail("stopped", 130)
-    except OSError as error:  # no permission, no space, no such folder: the system's words name the file
-        _fail(str(error), 1)
+    except OSError as error:
+        _fail(_system_says(error), 2 if error.errno in USERS_MISTAKES else 1)
 
 
 def application() -> typer.Typer:
@@ -68,6 +72,16 @@ def _wrinklewave(
     ] = False,
 ) -> None:
     """A laboratory for waves and wrinkles in soft layered materials: simulate, measure, compare."""
+
+
+def _system_says(error: OSError) -> str:
+    """What went wrong with which file, in the words of the operating system."""
+    if error.filename is None or error.strerror is None:
+        return str(error)
+    problem = f"{error.filename}: {error.strerror[0].lower()}{error.strerror[1:]}"
+    if error.errno not in USERS_MISTAKES:
+        return problem
+    return f"{problem}\n  to mend:  give a path in a folder that exists and that you may write to"
 
 
 def _fail(message: str, exit_code: int) -> None:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from wrinklewave.experiments.simulate import Progress
 
 LOG_INTERVAL, BAR_INTERVAL = 5.0, 0.1
+MEANINGFUL = 0.05
+"""Part of the run after which its imbalance of energy is shown: before, there is hardly any work to compare it with."""
 
 
 @contextmanager
@@ -43,11 +45,13 @@ def simulation_progress(title: str) -> Iterator[Callable[[Progress], None]]:
 
 def describe(state: Progress) -> str:
     """One line about a running simulation."""
-    left = f"{state.seconds_left:.0f} s left" if state.seconds_left == state.seconds_left else "starting"
-    return (
-        f"t = {state.time * 1e3:.3f} of {state.end_time * 1e3:g} ms, step {state.step}, "
-        f"{state.updates_per_second / 1e6:.0f} M updates/s, energy off by {state.imbalance:.1e}, {left}"
-    )
+    parts = [f"t = {state.time * 1e3:.3f} of {state.end_time * 1e3:g} ms", f"step {state.step}"]
+    if state.updates_per_second > 0:
+        parts.append(f"{state.updates_per_second / 1e6:.0f} M updates/s")
+    if state.time > MEANINGFUL * state.end_time:
+        parts.append(f"energy off by {state.imbalance:.1e}")
+    known = state.seconds_left == state.seconds_left
+    return ", ".join([*parts, f"{state.seconds_left:.0f} s left" if known else "starting"])
 
 
 def _update(bar: Bar, task: TaskID, state: Progress) -> None:

@@ -146,6 +146,9 @@ def _times(case: Case) -> Iterator[InputError]:
 
 
 def _places(case: Case) -> Iterator[InputError]:
+    if case.output.pixel_size > case.block.length / 3:
+        problem = f"{_mm(case.output.pixel_size)} gives fewer than four places on {_mm(case.block.length)}"
+        yield _error("output.pixel_size", problem, "at most a third of block.length", "lower it")
     limit = case.block.length * (1 + ROUNDING)
     lists = {"output.probes": case.output.probes, "analysis.positions": case.analysis.positions}
     for name, values in lists.items():

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 STATE = ("u", "w", "vx", "vy", "factors")
 WHOLE = ("next_event", "step", "last_step", "patience")
 COUNTERS = (*WHOLE, "dt", "first_dt", "last_dt", "power_time", "stepping_seconds")
+START_AGAIN = "start again: wrinklewave simulate CASE --overwrite"
 SUMS = ("totals", "work", "power")
 
 
@@ -59,24 +60,29 @@ def read_checkpoint(path: Path, simulation: Simulation, case_text: str) -> Recor
     try:
         file = h5py.File(path, "r")
     except OSError as error:
-        raise InputError(
-            f"cannot be read ({error})", file=path, cure="start again without --resume"
-        ) from error
+        raise InputError(f"cannot be read ({error})", file=path, cure=START_AGAIN) from error
     with file:
         if file.attrs.get("version") != __version__ or file.attrs.get("case") != case_text:
             raise InputError(
                 "is the checkpoint of another case or version of wrinklewave",
                 file=path,
                 expected="the case that the run was started with",
-                cure="give the same case and --set values, or start again without --resume",
+                cure="give the same case and --set values, or start again with --overwrite",
             )
-        for name in COUNTERS:
-            value = file.attrs[name]
-            setattr(simulation, name, int(value) if name in WHOLE else float(value))
-        for name in SUMS:
-            getattr(simulation, name)[:] = file[f"sums/{name}"][()]
-        for name in STATE:
-            getattr(simulation.model.arrays, name)[:] = file[f"state/{name}"][()]
-        simulation.model.memory[:] = file["state/memory"][()]
-        simulation.history = [tuple(row) for row in file["history"][()]]
-        return Record({name: values[()] for name, values in file["record"].items()})
+        try:
+            return _restore(file, simulation)
+        except (KeyError, OSError) as error:
+            raise InputError(f"is damaged ({error})", file=path, cure=START_AGAIN) from error
+
+
+def _restore(file: h5py.File, simulation: Simulation) -> Record:
+    for name in COUNTERS:
+        value = file.attrs[name]
+        setattr(simulation, name, int(value) if name in WHOLE else float(value))
+    for name in SUMS:
+        getattr(simulation, name)[:] = file[f"sums/{name}"][()]
+    for name in STATE:
+        getattr(simulation.model.arrays, name)[:] = file[f"state/{name}"][()]
+    simulation.model.memory[:] = file["state/memory"][()]
+    simulation.history = [tuple(row) for row in file["history"][()]]
+    return Record({name: values[()] for name, values in file["record"].items()})

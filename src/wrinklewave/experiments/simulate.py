@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wrinklewave.analysis.analyse import analyse
+from wrinklewave.analysis.filters import check_cutoff
 from wrinklewave.config import Case, load_case
 from wrinklewave.dynamics.checkpoint import read_checkpoint, write_checkpoint
 from wrinklewave.dynamics.model import build_model
@@ -22,7 +23,7 @@ from wrinklewave.experiments.interruption import interruptible
 from wrinklewave.experiments.recording import FieldStore, SurfaceRecorder
 from wrinklewave.experiments.run_folder import RunFolder
 from wrinklewave.experiments.run_summary import energy_scalars, material_scalars
-from wrinklewave.experiments.simulated_surface import simulated_surface
+from wrinklewave.experiments.simulated_surface import laboratory_grid, simulated_surface
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,7 +54,7 @@ class Progress:
         updates_per_second: element updates per second of the stepping loop.
         imbalance: energy imbalance over external work.
         seconds: wall-clock time since the run was started or resumed.
-        seconds_left: estimated.
+        seconds_left: estimated; NaN at the start.
     """
 
     time: float
@@ -122,6 +123,7 @@ def simulate(
         RunError: if the simulation cannot go on; what was computed is kept in ``out``.
     """
     case = _resolved(case, overrides)
+    check_cutoff(case.analysis.filter_wavelength, laboratory_grid(case)[1])
     threads, chosen = _use_threads(threads), choose_device(device)
     folder = RunFolder.prepare(Path(out), case, resume=resume, overwrite=overwrite) if out else None
     place = folder.path if folder else None
@@ -212,7 +214,7 @@ def _run(
     surface_times = set(np.round(output_times(case.output.surface_interval, end), 12))
     field_times = np.round(output_times(case.output.field_interval, end), 12)
     begin = saved = time.perf_counter()
-    start = simulation.time
+    clock = Clock(simulation)
     with interruptible() as wished:
         for event in simulation.run():
             fields = simulation.fields()
@@ -221,7 +223,7 @@ def _run(
             if event.time in field_times:
                 store.add(int(np.searchsorted(field_times, event.time)), simulation, fields)
             now = time.perf_counter()
-            progress(_progress(simulation, start, now - begin))
+            progress(_progress(simulation, now - begin, clock.seconds_left()))
             due = now - saved > case.solver.checkpoint_interval or wished()
             if folder and due:
                 write_checkpoint(folder.checkpoint, simulation, recorder.to_record(), case.to_toml())
@@ -231,9 +233,29 @@ def _run(
     return Outcome.FINISHED
 
 
-def _progress(simulation: Simulation, start: float, seconds: float) -> Progress:
+class Clock:
+    """Estimates the time that a simulation has left from its pace since its first steps, which may have had to wait
+    for the compiler."""
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._at_first, self._first = simulation.time, 0.0
+
+    def seconds_left(self) -> float:
+        """Wall-clock time left [s]; NaN while there is nothing to tell it from."""
+        now, done = time.perf_counter(), self._simulation.time
+        if not self._first:
+            if done > self._at_first:
+                self._first, self._at_first = now, done
+            return float("nan")
+        if done == self._at_first:
+            return float("nan")
+        left = float(self._simulation.events[-1]) - done
+        return (now - self._first) * left / (done - self._at_first)
+
+
+def _progress(simulation: Simulation, seconds: float, left: float) -> Progress:
     end, now = float(simulation.events[-1]), simulation.time
-    left = seconds * (end - now) / (now - start) if now > start else float("nan")
     return Progress(
         now, end, simulation.step, simulation.updates_per_second, simulation.imbalance, seconds, left
     )

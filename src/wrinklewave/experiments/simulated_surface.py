@@ -20,6 +20,12 @@ if TYPE_CHECKING:
     from wrinklewave.config import Case
 
 
+def laboratory_grid(case: Case) -> Array:
+    """Places at which the surface is seen [m], from 0 to the held end, as near to ``output.pixel_size`` as fits."""
+    n = round(case.block.length / case.output.pixel_size)
+    return np.linspace(0.0, case.block.length, n + 1)
+
+
 def simulated_surface(case: Case, X: Array, record: Record) -> xr.Dataset:
     """The surface motion of a simulation.
 
@@ -31,8 +37,7 @@ def simulated_surface(case: Case, X: Array, record: Record) -> xr.Dataset:
     recorded = dict(record.arrays)
     time = recorded.pop("time")
     x_p, y_p = recorded["x_p"], recorded["y_p"]
-    n = round(case.block.length / case.output.pixel_size)
-    x = np.linspace(0.0, case.block.length, n + 1)
+    x = laboratory_grid(case)
     x_boundary = x_p[:, 0]
     rest = case.block.height / 2
     nodes = SurfaceNodes(time, X, x_p, y_p, recorded["strain_xx"])

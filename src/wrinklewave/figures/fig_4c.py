@@ -21,7 +21,7 @@ SHOWN_RATE = 300.0
     "fig_4c_strain_rate",
     number="4C",
     caption="Magnitude of the depth-averaged nominal strain rate, cut at 300 /s as in the paper where it "
-    "is more. White: wavefront.",
+    "is more. White: wavefront; grey dash-dotted: paths of material points.",
     possible=lambda inputs: inputs.analysis.strains is not None,
 )
 def strain_rate_map(inputs: FigureInputs) -> Figure:
@@ -42,7 +42,7 @@ def strain_rate_map(inputs: FigureInputs) -> Figure:
         extend="max" if highest > SHOWN_RATE else "neither",
     )
     draw_boundary(axes, inputs)
-    draw_material_points(axes, inputs)
+    draw_material_points(axes, inputs, colour="silver")
     draw_speed(axes, inputs.analysis.pulse.wavefront, inputs, name="wavefront")
     frame(axes, inputs)
     legend_above(axes)

@@ -9,7 +9,7 @@ import numpy as np
 from wrinklewave.figures.inputs import FigureInputs
 from wrinklewave.figures.overlays import draw_boundary, draw_material_points, draw_speed, frame
 from wrinklewave.figures.registry import figure
-from wrinklewave.figures.style import MAP_MARGINS, MILLI, legend_above, new_figure, space_time_map
+from wrinklewave.figures.style import MAP_MARGINS, MILLI, legend_above, new_figure, outlined, space_time_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,6 +44,9 @@ def strain_map(inputs: FigureInputs) -> Figure:
     if np.fmax.reduce(ratio, axis=None) > 1.0:
         axes.contour(
             MILLI * subject.x, MILLI * subject.time, ratio, levels=[1.0], colors="white", linewidths=0.7
+        )
+        axes.plot(
+            [], [], color="white", lw=0.9, path_effects=outlined(0.9), label="$\\epsilon_{xx} = \\epsilon_c$"
         )
     draw_boundary(axes, inputs)
     draw_material_points(axes, inputs)

@@ -58,6 +58,6 @@ def energy_balance(inputs: FigureInputs) -> Figure:
     energies.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     largest = max(abs(history["external_work_J_per_m"]).max(), 1e-300)
     imbalance.plot(time, 100.0 * history["imbalance_J_per_m"] / largest, color="black", lw=1.0)
-    imbalance.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
+    imbalance.ticklabel_format(axis="y", style="plain", useOffset=False)
     imbalance.set(xlabel="time (ms)", ylabel="imbalance (%)")
     return drawing

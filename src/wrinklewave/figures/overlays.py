@@ -55,14 +55,14 @@ def draw_speed(
         )
 
 
-def draw_material_points(axes: Axes, inputs: FigureInputs) -> None:
+def draw_material_points(axes: Axes, inputs: FigureInputs, *, colour: str = "black") -> None:
     """Paths of the material points that start at the chosen positions."""
     subject = inputs.subject
     for number, position in enumerate(inputs.positions):
         point = int(np.abs(subject.X - position).argmin())
         label = "material points" if number == 0 else None
         axes.plot(
-            MILLI * subject.x_p[:, point], MILLI * subject.time, "-.", color="black", lw=1.0, label=label
+            MILLI * subject.x_p[:, point], MILLI * subject.time, "-.", color=colour, lw=1.0, label=label
         )
 
 
