@@ -40,6 +40,5 @@ class NumbaVersion:
 
     def advance(self, n_steps: int, t: float = 0.0) -> None:
         """Take whole steps from time ``t`` [s]."""
-        numba.set_num_threads(self.threads)
         p, m = self.problem, self.problem.model
         advance(n_steps, t, p.dt, p.dt, self._arrays, m.memory_rows, m.terms, p.boundary, self._totals)

@@ -11,7 +11,7 @@ from wrinklewave.config import load_case
 from wrinklewave.dynamics.barrier import LINE
 from wrinklewave.dynamics.boundary import Boundary
 from wrinklewave.dynamics.model import Model, build_model
-from wrinklewave.dynamics.stable_step import stable_steps
+from wrinklewave.dynamics.stable_step import stable_steps_share
 from wrinklewave.dynamics.step import Arrays, update_factors
 
 REPOSITORY = Path(__file__).parents[1]
@@ -86,7 +86,7 @@ def problem(n_elements: int) -> Problem:
     a.u[:, 1:-1] = size * random.standard_normal((rows + 1, columns - 1))
     a.w[1:, :-1] = size * random.standard_normal((rows, columns))
     steps = np.zeros(model.mesh.shape)
-    stable_steps(a, model.density, steps)
+    stable_steps_share(0, a, model.density, steps)
     dt = 0.5 * float(steps.min())
-    update_factors(a, dt, dt)
+    update_factors(a.terms, dt, dt, a.factors)
     return Problem(model, boundary, dt)

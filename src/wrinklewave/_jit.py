@@ -50,12 +50,6 @@ def _kernel_cache(room: str) -> str:
     return str(folder / "wrinklewave" / f"{room}-{digest}")
 
 
-def _use_work_queue() -> None:
-    """Choose threads that do not spin while they wait: spinning ones collapse when the cores are shared."""
-    if "NUMBA_THREADING_LAYER" not in os.environ:
-        numba.config.THREADING_LAYER = "workqueue"
-
-
 def _offer_noalias() -> dict[str, Any]:
     """The option that marks array arguments as not overlapping; numba has the flag but no spelling for it on CPUs."""
     if not hasattr(cpu.CPUTargetOptions, "noalias"):
@@ -64,7 +58,6 @@ def _offer_noalias() -> dict[str, Any]:
 
 
 _use_full_vector_width()
-_use_work_queue()
 
 _COMMON: dict[str, Any] = {"error_model": "numpy", "cache": True, "nogil": True}
 _NO_COUNTING: dict[str, Any] = _COMMON | {
@@ -97,8 +90,9 @@ same place of one array within one iteration."""
 serial = _compiler(**_NO_COUNTING)
 """For loops whose order matters, with strict floating point."""
 
-parallel = _compiler(**_COMMON, parallel=True)
-"""For functions that share rows of elements out to threads."""
+strict = _compiler(**_NO_COUNTING, forceinline=True)
+"""For pieces of serial loops, inlined into them: state is handed over in structures of many arrays, and to pass one
+to a function costs more than most of these do."""
 
 allocating = _compiler(**_COMMON)
-"""For loops that make arrays of their own, with strict floating point."""
+"""For loops that make arrays of their own or call numpy on them, with strict floating point."""

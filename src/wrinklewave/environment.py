@@ -72,13 +72,11 @@ class Threading:
     """How kernels run on several cores.
 
     Args:
-        layer: numba's threading layer.
         threads: that a run uses unless told otherwise.
         vector_width: bits of the widest vectors that kernels are compiled for.
         cache: folder of the compiled kernels.
     """
 
-    layer: str
     threads: int
     vector_width: int
     cache: str
@@ -164,7 +162,7 @@ def threading() -> Threading:
     wide = "+avx512f" in features and "-prefer-256-bit" in features
     width = 512 if wide else 256 if "+avx2" in features else 128
     cache = os.environ.get("NUMBA_CACHE_DIR") or str(Path(_jit._kernel_cache("dynamics")).parent)
-    return Threading(config.THREADING_LAYER, config.NUMBA_NUM_THREADS, width, cache)
+    return Threading(processor().usable, width, cache)
 
 
 def _gpu(device: object) -> Gpu:

@@ -77,7 +77,7 @@ def grooved() -> Model:
     )
     boundary = Boundary(
         *(LEFT_HELD, FIXED, FREE, FREE, False, 10e-3, 0.0, PUSH, AT_REST, np.zeros((3, 4, 13))),
-        bins=np.zeros((2, 13), dtype=np.int64),
+        bins=np.zeros((3, 2, 13), dtype=np.int64),
     )
     model = assemble(mesh, [relaxing(bulk=False)], boundary)
     closing = np.array([0, 0.4, 0.8, 1.2, 1.15, 0.5, 0, -0.5, -1.15, -1.2, -0.8, -0.4, 0]) * 1e-3

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from wrinklewave.dynamics.boundary import CONTACT_LOSS, FREE, LEFT_MOVED, N_TOTALS, ROLLER, Boundary
+from wrinklewave.dynamics.boundary import CONTACT_LOSS, FREE, LEFT_MOVED, N_TOTALS, ROLLER, TOP, Boundary
 from wrinklewave.dynamics.model import Model, assemble
 from wrinklewave.dynamics.self_contact import keep_apart
 from wrinklewave.dynamics.step import advance
@@ -39,7 +39,7 @@ def grooved_block(*, self_contact: bool) -> Model:
         motion=np.array([[0.0, 2e-3, 0.0, 3e-3, 0.0, 0.0]]),
         motion_across=np.zeros((1, 6)),
         old=np.zeros((3, 4, COLUMNS + 1)),
-        bins=np.zeros((2, (COLUMNS + 1) * self_contact), dtype=np.int64),
+        bins=np.zeros((3, 2, (COLUMNS + 1) * self_contact), dtype=np.int64),
     )
     return assemble(mesh, [solid], boundary)
 
@@ -86,7 +86,7 @@ def test_contact_keeps_momentum(verified: Verified) -> None:
         return np.array([(mass * a.vx[-1]).sum(), (mass * a.vy[-1]).sum()])
 
     before, velocities = momentum(), a.vx[-1].copy()
-    keep_apart(a, ROWS, 1.0, 1e-6, model.boundary.old[2], model.boundary.bins)
+    keep_apart(a, ROWS, 1.0, 1e-6, model.boundary.old[TOP], model.boundary.bins[TOP])
     assert (a.vx[-1] != velocities).any()  # something touched
     given = np.abs(momentum() - before).max() / (mass * np.hypot(a.vx[-1], a.vy[-1])).sum()
     verified.error("momentum given to a body by contact with itself", float(given), 1e-12)

@@ -26,6 +26,10 @@ def _pointer(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     return cgutils.get_item_pointer(context, builder, array_type, array, [arguments[1]])
 
 
+ABANDONED = 2**62
+"""A count that no meeting reaches: who finds it does not wait."""
+
+
 @intrinsic
 def load(typingctx: Any, counters: Any, i: Any) -> Any:
     """Counter ``i`` as other threads have left it."""
@@ -58,8 +62,9 @@ else:
 
 @serial
 def wait_for_all(counters, part, n_parts, round):
-    """Say that ``part`` has come to meeting number ``round`` (counted from 1), and wait until all have."""
+    """Say that ``part`` has come to meeting number ``round`` (counted from 1), and wait until all have; its number."""
     store(counters, part * LINE, round)
     for other in range(n_parts):
         while load(counters, other * LINE) < round:
             offer_core()
+    return round

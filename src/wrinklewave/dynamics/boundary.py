@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wrinklewave._jit import serial
+from wrinklewave._jit import serial, strict
 from wrinklewave.dynamics.self_contact import NO_BINS, keep_apart
 
 FREE, FIXED, ROLLER = 0, 1, 2
@@ -26,12 +26,25 @@ right, and in y [N s/m]; force of the struck end in the last step [N/m]."""
 N_TOTALS = 7
 
 
+class Nodes(NamedTuple):
+    """What the edges see of the :class:`~wrinklewave.dynamics.step.Arrays`: fields of shape [n_rows, n_columns]."""
+
+    X: np.ndarray
+    Y: np.ndarray
+    u: np.ndarray
+    w: np.ndarray
+    vx: np.ndarray
+    vy: np.ndarray
+    inverse_mass: np.ndarray
+
+
 class Boundary(NamedTuple):
     """Edge conditions and their working memory.
 
     ``motion`` and ``motion_across`` [n_segments, 6] are piecewise cubic histories of the plate or end: t0, t1 [s],
     U0, U1 [m], V0, V1 [m/s]; ``old`` [3, 4, n] holds u, w, vx, vy before the step, of the left column, the bottom row
-    and the top row. A free surface may touch itself if there are ``bins`` [2, n_columns] for it to be sorted into.
+    and the top row. A free surface may touch itself if there are ``bins`` [3, 2, n_columns] for its segments
+    to be sorted into, edge by edge.
     """
 
     left: int
@@ -72,13 +85,13 @@ def position(motion, t):
     )
 
 
-@serial
+@strict
 def n_edge_nodes(rows, columns):
     """Nodes at the edges of a grid of ``rows`` by ``columns`` nodes."""
     return 2 * (rows + columns) - 4
 
 
-@serial
+@strict
 def edge_node(n, rows, columns):
     """Edge of the ``n``-th edge node, its place along it, and its row and column in the grid."""
     if n < rows:
@@ -93,12 +106,12 @@ def edge_node(n, rows, columns):
     return RIGHT, j, j, columns - 1
 
 
-@serial
+@strict
 def _remember(old, k, j, i, a):
     old[0, k], old[1, k], old[2, k], old[3, k] = a.u[j, i], a.w[j, i], a.vx[j, i], a.vy[j, i]
 
 
-@serial
+@strict
 def remember_node(n, a, boundary):
     """Keep what the edges need of the state of their ``n``-th node before a step; corners for both their edges."""
     rows, columns = a.u.shape
@@ -111,14 +124,30 @@ def remember_node(n, a, boundary):
         _remember(boundary.old[TOP], i, j, i, a)
 
 
-@serial
-def remember_boundary(a, boundary):
-    """Keep what the edges need of the state before a step."""
-    for n in range(n_edge_nodes(a.u.shape[0], a.u.shape[1])):
-        remember_node(n, a, boundary)
+@strict
+def edge_ranges(first, stop, rows, columns):
+    """Numbers of the edge nodes in node rows ``first`` to ``stop``: ranges of the left, bottom, top and right edge."""
+    n_left, n_along = rows, columns - 1
+    bottom, top = n_left, n_left + n_along
+    right = top + n_along - 1  # the number that the right edge's node of row 0 would have
+    return (
+        (first, stop),
+        (bottom, bottom + n_along if first == 0 else bottom),
+        (top, top + n_along if stop == rows else top),
+        (right + max(first, 1), right + min(stop, rows - 1)),
+    )
 
 
-@serial
+@strict
+def remember_rows(first, stop, a, boundary):
+    """Keep what the edges in node rows ``first`` to ``stop`` need of the state before a step."""
+    rows, columns = a.u.shape
+    for start, end in edge_ranges(first, stop, rows, columns):
+        for n in range(start, end):
+            remember_node(n, a, boundary)
+
+
+@strict
 def _push(a, j, i, edge, k, plate, plate_old, side, friction, dt, boundary, totals):
     """Keep node (j, i) out of a rigid plate; ``side`` is +1 for a plate on the left, -1 on the right."""
     gap = side * (a.X[j, i] + a.u[j, i] - plate)
@@ -144,7 +173,7 @@ def _push(a, j, i, edge, k, plate, plate_old, side, friction, dt, boundary, tota
     return impulse
 
 
-@serial
+@strict
 def _prescribe(a, j, i, edge, k, U, across, W, dt, boundary, totals):
     """Put node (j, i) where the end is; ``across`` says whether its transverse displacement W is prescribed too."""
     if a.inverse_mass[j, i] == 0.0:
@@ -165,7 +194,7 @@ def _prescribe(a, j, i, edge, k, U, across, W, dt, boundary, totals):
     return impulse
 
 
-@serial
+@strict
 def _stop_across(a, j, i, totals):
     """Symmetry or a frictionless guide: node (j, i) keeps its height."""
     if a.inverse_mass[j, i] > 0.0:
@@ -174,7 +203,7 @@ def _stop_across(a, j, i, totals):
     a.vy[j, i] = 0.0
 
 
-@serial
+@strict
 def _stop(a, j, i, right, totals):
     """A node of the right edge keeps its place along x, and across if the edge is fixed."""
     if a.inverse_mass[j, i] > 0.0:
@@ -188,7 +217,7 @@ def _stop(a, j, i, right, totals):
         a.vy[j, i] = 0.0
 
 
-@serial
+@strict
 def drive_position(t, dt, boundary):
     """Where the plate or end is at time ``t`` and was ``dt`` before, and how far its top has moved across [m]."""
     if boundary.left == LEFT_FREE:
@@ -197,7 +226,7 @@ def drive_position(t, dt, boundary):
     return position(boundary.motion, t), position(boundary.motion, t - dt), across
 
 
-@serial
+@strict
 def _drive(a, j, i, edge, k, drive, dt, boundary, totals):
     """What the left end does to a node of an edge, its own or one that may touch the plate."""
     U, U_old, W_top = drive
@@ -213,7 +242,7 @@ def _drive(a, j, i, edge, k, drive, dt, boundary, totals):
     totals[FORCE] += impulse / dt
 
 
-@serial
+@strict
 def hold_node(n, drive, dt, a, boundary, totals):
     """Make the ``n``-th edge node, moved by a free step ``dt`` [s], obey the conditions there.
 
@@ -234,7 +263,7 @@ def hold_node(n, drive, dt, a, boundary, totals):
         _stop(a, j, i, boundary.right, totals)
 
 
-@serial
+@strict
 def straight_rate(a):
     """Rate of the left end's motion across per height [1/s], from the momentum across that its nodes have together."""
     momentum, inertia = 0.0, 0.0
@@ -245,33 +274,35 @@ def straight_rate(a):
     return momentum / inertia
 
 
-@serial
+@strict
 def keep_straight(j, rate, dt, a, boundary):
     """Let the left end move across only in proportion to height: the constraint that does no work."""
     a.vy[j, 0] = rate * a.Y[j, 0]
     a.w[j, 0] = boundary.old[LEFT, 1, j] + dt * a.vy[j, 0]
 
 
-@serial
-def hold_apart(dt, a, boundary, totals):
-    """Contact of the free surfaces with themselves; before all other conditions."""
-    last = a.u.shape[0] - 1
-    if boundary.top == FREE:
-        totals[CONTACT_LOSS] += keep_apart(a, last, 1.0, dt, boundary.old[2], boundary.bins)
-    if boundary.bottom == FREE:
-        totals[CONTACT_LOSS] += keep_apart(a, 0, -1.0, dt, boundary.old[1], boundary.bins)
+@strict
+def hold_apart(edge, dt, a, boundary, totals):
+    """Contact of the free surface at the bottom or top ``edge`` with itself; before all other conditions there."""
+    row, side = (a.u.shape[0] - 1, 1.0) if edge == TOP else (0, -1.0)
+    if (boundary.top if edge == TOP else boundary.bottom) == FREE:
+        totals[CONTACT_LOSS] += keep_apart(a, row, side, dt, boundary.old[edge], boundary.bins[edge])
 
 
-@serial
-def apply_boundary(t, dt, a, boundary, totals):
-    """Make the state at time ``t`` [s], reached by a free step ``dt``, obey the conditions at the edges."""
-    if boundary.bins.shape[1] > 0:
-        hold_apart(dt, a, boundary, totals)
+@strict
+def hold_rows(first, stop, t, dt, a, boundary, totals):
+    """Make node rows ``first`` to ``stop`` at time ``t`` [s], reached by a free step ``dt``, obey their conditions.
+
+    All but :func:`keep_straight`. ``totals`` [n_edge_nodes, N_TOTALS] are gathered node by node, so that their sum does
+    not depend on who takes which rows.
+    """
+    rows, columns = a.u.shape
+    if boundary.bins.shape[2] > 0:
+        for edge in (BOTTOM, TOP):
+            if (edge == TOP and stop == rows) or (edge == BOTTOM and first == 0):
+                hold_apart(edge, dt, a, boundary, totals[0 if edge == BOTTOM else rows - 1])
     drive = drive_position(t, dt, boundary)
-    totals[FORCE] = 0.0
-    for n in range(n_edge_nodes(a.u.shape[0], a.u.shape[1])):
-        hold_node(n, drive, dt, a, boundary, totals)
-    if boundary.left == LEFT_STRAIGHT:
-        rate = straight_rate(a)
-        for j in range(a.u.shape[0]):
-            keep_straight(j, rate, dt, a, boundary)
+    for start, end in edge_ranges(first, stop, rows, columns):
+        for n in range(start, end):
+            totals[n, FORCE] = 0.0
+            hold_node(n, drive, dt, a, boundary, totals[n])

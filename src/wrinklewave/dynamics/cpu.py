@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.dynamics.backends import Sample
-from wrinklewave.dynamics.energy import N_COLUMNS, kinetic_energy, survey
-from wrinklewave.dynamics.fields import FIELDS, element_fields
-from wrinklewave.dynamics.stable_step import stable_steps
+from wrinklewave.dynamics.energy import N_COLUMNS, kinetic_energy, survey_share
+from wrinklewave.dynamics.fields import FIELDS, fields_share
+from wrinklewave.dynamics.stable_step import stable_steps_share
 from wrinklewave.dynamics.step import advance
+from wrinklewave.dynamics.team import share_out
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -59,7 +60,7 @@ class Cpu:
     def __init__(self, model: Model) -> None:
         rows, columns = model.mesh.shape
         parts = model.arrays.shares.size - 1
-        self._model = model
+        self._model, self._parts = model, parts
         self._memory = model.memory_rows
         self._steps = np.zeros((rows, columns))
         self._survey = np.zeros((rows, N_COLUMNS))
@@ -80,19 +81,19 @@ class Cpu:
             advance(count, t + first * dt, last, dt, shared, self._memory, m.terms, m.boundary, totals)
             seconds = time.perf_counter() - begin
             self._pace.note(seconds / count)
-            survey(dt, a, self._memory, m.terms, self._work, self._survey)
+            share_out(survey_share, self._parts, dt, a, self._memory, m.terms, self._work, self._survey)
             kinetic = kinetic_energy(a.inverse_mass, a.vx, a.vy)
             yield Sample(count, seconds, self._survey, kinetic, (a.u[-1, 0], a.w[-1, 0]))
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
-        stable_steps(self._model.arrays, self._model.density, self._steps)
+        share_out(stable_steps_share, self._parts, self._model.arrays, self._model.density, self._steps)
         return self._steps
 
     def fields(self) -> NDArray[np.float64]:
         """Element fields."""
-        out = np.zeros((len(FIELDS), *self._model.mesh.shape))
-        element_fields(self._model.arrays, self._memory, self._model.terms, out)
+        m, out = self._model, np.zeros((len(FIELDS), *self._model.mesh.shape))
+        share_out(fields_share, self._parts, m.arrays, self._memory, m.terms, out)
         return out
 
     def fetch_nodes(self) -> None:

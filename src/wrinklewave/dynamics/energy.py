@@ -10,9 +10,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import prange
 
-from wrinklewave._jit import parallel, scalar, uintp, vector
+from wrinklewave._jit import allocating, scalar, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.elements.one_point import HOURGLASS_STIFFNESS
 from wrinklewave.dynamics.elements.quadrilateral import bulk_viscosity, squared_length
@@ -190,23 +189,21 @@ def _sum(values):
     return total
 
 
-@parallel
-def survey(dt, a, memory, terms, work, out):
-    """Fill ``out`` [n_rows, N_COLUMNS] with the sums, or extremes, of each element row.
+@allocating
+def survey_share(part, dt, a, memory, terms, work, out):
+    """Fill the rows of one share in ``out`` [n_rows, N_COLUMNS] with the sums, or extremes, of each element row.
 
     ``work`` [n_parts, N_COLUMNS, n_columns] is a buffer. ``dt`` [s] is the step that led to the present state.
     """
-    n_parts = a.shares.size - 1
-    for part in prange(n_parts):
-        row = work[part]
-        for j in range(a.shares[part], a.shares[part + 1]):
-            for k in range(a.first_run[j], a.first_run[j + 1]):
-                start, stop, layer = a.runs[k]
-                survey_run(j, start, stop, layer, dt, a, memory, terms, row)
-            for column in range(HOURGLASS_AMPLITUDE):
-                out[j, column] = _sum(row[column])
-            out[j, HOURGLASS_AMPLITUDE] = row[HOURGLASS_AMPLITUDE].max()
-            out[j, J_LEAST], out[j, J_MOST] = row[J_LEAST].min(), row[J_MOST].max()
+    row = work[part]
+    for j in range(a.shares[part], a.shares[part + 1]):
+        for k in range(a.first_run[j], a.first_run[j + 1]):
+            start, stop, layer = a.runs[k]
+            survey_run(j, start, stop, layer, dt, a, memory, terms, row)
+        for column in range(HOURGLASS_AMPLITUDE):
+            out[j, column] = _sum(row[column])
+        out[j, HOURGLASS_AMPLITUDE] = row[HOURGLASS_AMPLITUDE].max()
+        out[j, J_LEAST], out[j, J_MOST] = row[J_LEAST].min(), row[J_MOST].max()
 
 
 def kinetic_energy(inverse_mass: np.ndarray, vx: np.ndarray, vy: np.ndarray) -> float:

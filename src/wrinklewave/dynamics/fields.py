@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from numba import prange
 
-from wrinklewave._jit import parallel, uintp, vector
+from wrinklewave._jit import serial, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.energy import deformation, overstresses
 from wrinklewave.dynamics.points import bulk_place, corners, n_points, point_place, volume_change
@@ -65,15 +64,13 @@ def fields_run(j, start, stop, layer, a, memory, terms, out):
         out[XX, r, i], out[YY, r, i], out[XY, r, i], out[VOLUME, r, i] = xx, yy, xy, 1.0 + e
 
 
-@parallel
-def element_fields(a, memory, terms, out):
-    """Fill ``out`` [len(FIELDS), n_rows, n_columns] with the fields of the present state."""
-    n_parts = a.shares.size - 1
-    for part in prange(n_parts):
-        for j in range(a.shares[part], a.shares[part + 1]):
-            for k in range(a.first_run[j], a.first_run[j + 1]):
-                start, stop, layer = a.runs[k]
-                fields_run(j, start, stop, layer, a, memory, terms, out)
+@serial
+def fields_share(part, a, memory, terms, out):
+    """Fill the rows of one share in ``out`` [len(FIELDS), n_rows, n_columns] with the fields of the present state."""
+    for j in range(a.shares[part], a.shares[part + 1]):
+        for k in range(a.first_run[j], a.first_run[j + 1]):
+            start, stop, layer = a.runs[k]
+            fields_run(j, start, stop, layer, a, memory, terms, out)
 
 
 def to_nodes(columns: np.ndarray) -> np.ndarray:

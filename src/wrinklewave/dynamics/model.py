@@ -87,7 +87,7 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
         motion=motion,
         motion_across=across,
         old=np.zeros((3, 4, max(mesh.X.shape))),
-        bins=np.zeros((2, mesh.X.shape[1]), dtype=np.int64),
+        bins=np.zeros((3, 2, mesh.X.shape[1]), dtype=np.int64),
     )
     return assemble(
         mesh,

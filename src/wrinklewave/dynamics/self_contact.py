@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from wrinklewave._jit import serial
+from wrinklewave._jit import serial, strict
 
 RETURNED = 0.01
 """Part of the overlap that is given back in one step."""
@@ -22,7 +22,7 @@ DEEPEST = 0.5
 EMPTY = -1
 
 
-@serial
+@strict
 def longest_step(a, row):
     """Largest extent of a segment along x [m], and whether the surface overhangs anywhere."""
     longest, overhangs = 0.0, False
@@ -33,12 +33,12 @@ def longest_step(a, row):
     return longest, overhangs
 
 
-@serial
+@strict
 def _place(a, row, i):
     return a.X[row, i] + a.u[row, i], a.Y[row, i] + a.w[row, i]
 
 
-@serial
+@strict
 def _sort_segments(a, row, left, width, bins):
     """Chain the segments of each bin: ``bins`` [2, n] holds the first of a bin, and each one's successor."""
     bins[0, :] = EMPTY
@@ -112,5 +112,5 @@ def keep_apart(a, row, side, dt, old, bins):
     return lost
 
 
-NO_BINS = np.zeros((2, 0), dtype=np.int64)
+NO_BINS = np.zeros((3, 2, 0), dtype=np.int64)
 """For a surface that is not held against itself."""

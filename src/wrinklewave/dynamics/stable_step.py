@@ -19,9 +19,7 @@ from __future__ import annotations
 
 import math
 
-from numba import prange
-
-from wrinklewave._jit import parallel, scalar, uintp, vector
+from wrinklewave._jit import scalar, serial, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.elements.quadrilateral import squared_length
 from wrinklewave.dynamics.points import area, corners, volume_change
@@ -71,12 +69,10 @@ def stable_step_run(j, start, stop, layer, a, density, out):
         out[r, i] = element_step(X, Y, u, w, vx, vy, mu_i, K_i, linear, quadratic, rho)
 
 
-@parallel
-def stable_steps(a, density, out):
-    """Fill ``out`` [n_rows, n_columns] with the largest stable step of each element [s], see :func:`element_step`."""
-    n_parts = a.shares.size - 1
-    for part in prange(n_parts):
-        for j in range(a.shares[part], a.shares[part + 1]):
-            for k in range(a.first_run[j], a.first_run[j + 1]):
-                start, stop, layer = a.runs[k]
-                stable_step_run(j, start, stop, layer, a, density, out)
+@serial
+def stable_steps_share(part, a, density, out):
+    """Fill the rows of one share in ``out`` [n_rows, n_columns] with the largest stable step of each element [s]."""
+    for j in range(a.shares[part], a.shares[part + 1]):
+        for k in range(a.first_run[j], a.first_run[j + 1]):
+            start, stop, layer = a.runs[k]
+            stable_step_run(j, start, stop, layer, a, density, out)

@@ -1,7 +1,9 @@
 """One time step after another, on one or more threads, with identical results for any number of them.
 
-Threads take contiguous rows of elements. A thread moves the node rows inside its share; the rows between two shares
-need the forces of both and are moved after all have finished, in the same order of additions.
+Threads take contiguous rows of elements. A thread moves the rows of nodes inside its share as it goes; the row between
+two shares needs the forces of both and is moved after all have finished, in the same order of additions. Each thread
+also does what the edges demand of its own nodes: a line of memory that another core has changed takes as long to come
+as a dozen elements.
 """
 
 from __future__ import annotations
@@ -9,15 +11,26 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import prange
 from numba.extending import overload
 
-from wrinklewave._jit import parallel, serial
-from wrinklewave.dynamics.barrier import wait_for_all
-from wrinklewave.dynamics.boundary import apply_boundary, remember_boundary
+from wrinklewave._jit import serial, strict
+from wrinklewave.dynamics.barrier import ABANDONED, wait_for_all
+from wrinklewave.dynamics.boundary import (
+    FORCE,
+    LEFT_STRAIGHT,
+    N_TOTALS,
+    Boundary,
+    Nodes,
+    hold_rows,
+    keep_straight,
+    n_edge_nodes,
+    remember_rows,
+    straight_rate,
+)
 from wrinklewave.dynamics.mean_dilatation_rows import mean_dilatation_row
 from wrinklewave.dynamics.points import ONE_POINT_COMPONENTS
 from wrinklewave.dynamics.rows import node_row, one_point_row
+from wrinklewave.dynamics.team import share_out
 from wrinklewave.materials.prony import step_factors
 
 FIRST = 0
@@ -52,18 +65,18 @@ class Arrays(NamedTuple):
 
 
 @serial
-def update_factors(a, dt_last, dt):
+def update_factors(terms, dt_last, dt, factors):
     """Prony coefficients for the step just taken and the one to come."""
-    for n in range(a.terms.shape[0]):
-        for m in range(a.terms.shape[1]):
-            tau = a.terms[n, m, 2]
+    for n in range(terms.shape[0]):
+        for m in range(terms.shape[1]):
+            tau = terms[n, m, 2]
             b_last = step_factors(dt_last, tau)[1]
             decay, b = step_factors(dt, tau)
-            a.factors[n, m, 0] = a.terms[n, m, 0] * b_last
-            a.factors[n, m, 1] = decay
-            a.factors[n, m, 2] = a.terms[n, m, 0] * b
-            a.factors[n, m, 3] = a.terms[n, m, 1] * b_last
-            a.factors[n, m, 4] = a.terms[n, m, 1] * b
+            factors[n, m, 0] = terms[n, m, 0] * b_last
+            factors[n, m, 1] = decay
+            factors[n, m, 2] = terms[n, m, 0] * b
+            factors[n, m, 3] = terms[n, m, 1] * b_last
+            factors[n, m, 4] = terms[n, m, 1] * b
 
 
 def element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
@@ -87,13 +100,13 @@ def choose_element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factor
     return call
 
 
-@serial
+@strict
 def _slot(j, first):
     """Buffer of element row j in a share that begins at ``first``."""
     return 0 if j == first else 1 + (j - first) % 2
 
 
-@serial
+@strict
 def _share(part, a, memory, terms, dt_velocity, dt):
     first, last = a.shares[part], a.shares[part + 1]
     forces = a.forces[part]
@@ -108,55 +121,71 @@ def _share(part, a, memory, terms, dt_velocity, dt):
             node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
-@serial
-def _rows_between_shares(a, dt_velocity, dt):
-    n_parts = a.shares.size - 1
-    for part in range(n_parts + 1):
-        j = a.shares[part]
-        below = a.nothing
-        if part > 0:
-            below = a.forces[part - 1, _slot(j - 1, a.shares[part - 1])]
-        above = a.nothing
-        if part < n_parts:
-            above = a.forces[part, FIRST]
-        node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+@strict
+def _move_row(j, below, above, a, dt_velocity, dt):
+    node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+
+
+@strict
+def _edge_rows_of_share(part, a, dt_velocity, dt):
+    """Move the first row of nodes of a share, with the forces of the share below; and the last row of the mesh."""
+    first, last = a.shares[part], a.shares[part + 1]
+    below = a.nothing
+    if part > 0:
+        below = a.forces[part - 1, _slot(first - 1, a.shares[part - 1])]
+    _move_row(first, below, a.forces[part, FIRST], a, dt_velocity, dt)
+    if last == a.u.shape[0] - 1:
+        _move_row(last, a.forces[part, _slot(last - 1, first)], a.nothing, a, dt_velocity, dt)
 
 
 @serial
-def _before_step(n, dt_last, dt, a, boundary):
-    if n < 2:
-        update_factors(a, dt_last if n == 0 else dt, dt)
-    remember_boundary(a, boundary)
-
-
-@serial
-def _after_shares(n, t, dt_velocity, dt, a, boundary, totals):
-    _rows_between_shares(a, dt_velocity, dt)
-    apply_boundary(t + (n + 1) * dt, dt, a, boundary, totals)
-
-
-@serial
-def _march(part, n_parts, n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
-    """Take all steps of one share, in step with the other shares; the first also does what concerns all."""
+def march(part, n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
+    """Take all steps of one share, in step with the other shares. A share has the nodes from its first row on."""
+    n_parts, rows = a.shares.size - 1, a.u.shape[0]
+    first = a.shares[part]
+    stop = rows if part == n_parts - 1 else a.shares[part + 1]
+    nodes = Nodes(a.X, a.Y, a.u, a.w, a.vx, a.vy, a.inverse_mass)
+    meeting = 0
     for n in range(n_steps):
         dt_velocity = 0.5 * ((dt_last if n == 0 else dt) + dt)
-        if part == 0:
-            _before_step(n, dt_last, dt, a, boundary)
-        wait_for_all(a.meetings, part, n_parts, 2 * n + 1)
+        if n < 2 and part == 0:
+            update_factors(a.terms, dt_last if n == 0 else dt, dt, a.factors)
+        remember_rows(first, stop, nodes, boundary)
+        meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
         _share(part, a, memory, terms, dt_velocity, dt)
-        wait_for_all(a.meetings, part, n_parts, 2 * n + 2)
-        if part == 0:
-            _after_shares(n, t, dt_velocity, dt, a, boundary, totals)
+        meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
+        _edge_rows_of_share(part, a, dt_velocity, dt)
+        hold_rows(first, stop, t + (n + 1) * dt, dt, nodes, boundary, totals)
+        if boundary.left == LEFT_STRAIGHT:
+            meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
+            rate = straight_rate(nodes)
+            meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
+            for j in range(first, stop):
+                keep_straight(j, rate, dt, nodes, boundary)
 
 
-@parallel
-def advance(n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
-    """Take ``n_steps`` steps of ``dt`` [s] from time ``t`` = that of the positions, in place.
+def advance(
+    n_steps: int,
+    t: float,
+    dt_last: float,
+    dt: float,
+    a: Arrays,
+    memory: tuple[np.ndarray, ...],
+    terms: tuple[float, ...],
+    boundary: Boundary,
+    totals: np.ndarray,
+) -> None:
+    """Take ``n_steps`` steps of ``dt`` [s] from time ``t`` = that of the positions, in place, a thread for each share.
 
     ``dt_last`` is the length of the step that led to the present state (0 at the start). ``totals`` gathers work and
-    impulses at the boundary, see :mod:`wrinklewave.dynamics.boundary`. There must be a thread for each share.
+    impulses at the boundary, see :mod:`wrinklewave.dynamics.boundary`.
     """
-    n_parts = a.shares.size - 1
+    by_node = np.zeros((n_edge_nodes(*a.u.shape), N_TOTALS))
     a.meetings[:] = 0
-    for part in prange(n_parts):
-        _march(part, n_parts, n_steps, t, dt_last, dt, a, memory, terms, boundary, totals)
+    try:
+        share_out(march, a.shares.size - 1, n_steps, t, dt_last, dt, a, memory, terms, boundary, by_node)
+    except BaseException:
+        a.meetings[:] = ABANDONED  # so that nobody waits for a share that will not come
+        raise
+    totals[FORCE] = 0.0
+    totals += by_node.sum(axis=0)

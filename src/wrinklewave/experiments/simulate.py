@@ -158,18 +158,14 @@ def _resolved(case: Case | str | Path, overrides: Sequence[str]) -> Case:
 
 
 def _use_threads(threads: int | None) -> int:
-    import numba
-
-    available = min(processor().usable, numba.config.NUMBA_NUM_THREADS)
+    available = processor().usable
     if threads is not None and not 1 <= threads <= available:
         raise InputError(
             f"{threads} threads",
             key="threads",
             expected=f"1 to {available}, the cores that this process may use",
         )
-    threads = threads or available
-    numba.set_num_threads(threads)
-    return threads
+    return threads or available
 
 
 def output_times(interval: float, end: float) -> NDArray[np.float64]:

@@ -35,7 +35,7 @@ def _processor(processor: Processor) -> list[str]:
 
 def _kernels(threading: Threading) -> list[str]:
     return [
-        f"threads        {threading.threads} ({threading.layer} layer)",
+        f"threads        {threading.threads}",
         f"vectors        {threading.vector_width} bit",
         f"kernel cache   {threading.cache}",
     ]

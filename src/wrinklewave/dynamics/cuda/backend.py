@@ -85,14 +85,14 @@ class Cuda:
         self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
     ) -> Iterator[Sample]:
         """Step and survey on the device; samples come from it by the launch."""
-        factors = self._model.arrays.factors
+        terms, factors = self._model.arrays.terms, self._model.arrays.factors
         for first in range(0, n, group * SAMPLES_PER_LAUNCH):
             count = min(group * SAMPLES_PER_LAUNCH, n - first)
             last = dt_last if first == 0 else dt
-            update_factors(self._model.arrays, last, dt)
+            update_factors(terms, last, dt, factors)
             times = _Times(t + first * dt, last, dt, cuda.to_device(factors))
             if count > 1:
-                update_factors(self._model.arrays, dt, dt)
+                update_factors(terms, dt, dt, factors)
             self._on_device.arrays.factors.copy_to_device(factors)  # type: ignore[attr-defined]  # on the device it is a device array
             yield from self._march(count, group, times, totals)
 

@@ -14,9 +14,11 @@ from numba import config, cuda, float64
 
 from wrinklewave._jit import choose_cache
 from wrinklewave.dynamics.boundary import (
+    BOTTOM,
     FORCE,
     FREE,
     LEFT_STRAIGHT,
+    TOP,
     drive_position,
     hold_apart,
     hold_node,
@@ -88,14 +90,15 @@ def _edges(t, dt, a, boundary, totals):
     """Conditions at the edges, by one block; ``totals`` [n_edge_nodes, N_TOTALS] are gathered node by node."""
     thread, threads = cuda.threadIdx.x, cuda.blockDim.x
     rows = a.u.shape[0]
-    if boundary.bins.shape[1] > 0:
+    if boundary.bins.shape[2] > 0:
         folded = 0
         if boundary.top == FREE:
             folded += _overhangs(a, rows - 1)
         if boundary.bottom == FREE:
             folded += _overhangs(a, 0)
         if cuda.syncthreads_or(folded) and thread == 0:
-            hold_apart(dt, a, boundary, totals[0])
+            hold_apart(BOTTOM, dt, a, boundary, totals[0])
+            hold_apart(TOP, dt, a, boundary, totals[rows - 1])
         cuda.syncthreads()
     drive = drive_position(t, dt, boundary)
     for n in range(thread, n_edge_nodes(rows, a.u.shape[1]), threads):

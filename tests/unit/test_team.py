@@ -1,0 +1,46 @@
+"""Steps shared out to threads: as if one had done them all; and nobody waits for a share that does not come."""
+
+import numpy as np
+import pytest
+
+from support.backend_runs import MODELS
+from wrinklewave.dynamics.barrier import LINE
+from wrinklewave.dynamics.boundary import N_TOTALS, WORK
+from wrinklewave.dynamics.step import advance
+from wrinklewave.dynamics.team import share_out
+
+STATE = ("u", "w", "vx", "vy")
+
+
+def marched(name: str, parts: int, steps: int = 120, dt: float = 4e-7) -> dict[str, np.ndarray]:
+    model, totals = MODELS[name](), np.zeros(N_TOTALS)
+    rows, columns = model.mesh.shape
+    arrays = model.arrays._replace(
+        shares=np.linspace(0, rows, parts + 1).astype(np.int64),
+        forces=np.zeros((parts, 3, 8, columns + 2)),
+        meetings=np.zeros(parts * LINE, dtype=np.int64),
+    )
+    advance(steps, 0.0, 0.0, dt, arrays, model.memory_rows, model.terms, model.boundary, totals)
+    return {field: getattr(arrays, field) for field in STATE} | {"memory": model.memory, "totals": totals}
+
+
+@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("parts", [2, 3])
+def test_the_number_of_threads_changes_no_bit(name, parts):
+    one, many = marched(name, 1), marched(name, parts)
+    assert one["totals"][WORK] != 0
+    assert all(np.array_equal(one[key], many[key]) for key in one)
+
+
+def test_a_failure_in_a_share_is_told():
+    def kernel(part):
+        if part == 1:
+            raise RuntimeError("of part 1")
+
+    with pytest.raises(RuntimeError, match="of part 1"):
+        share_out(kernel, 2)
+
+
+def test_more_parts_than_threads_is_an_error():
+    with pytest.raises(ValueError, match="10000 parts"):
+        share_out(lambda part: None, 10_000)
