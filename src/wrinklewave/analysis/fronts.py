@@ -137,7 +137,7 @@ def _least_squares(design: Array, values: Array) -> tuple[Array, Array, Array]:
     """Coefficients, their standard uncertainties with correlated residuals, and the residuals."""
     coefficients = np.linalg.lstsq(design, values, rcond=None)[0]
     residual = values - design @ coefficients
-    freedom = max(_independent(residual) - design.shape[1], 1.0)
+    freedom = max(independent_count(residual) - design.shape[1], 1.0)
     covariance = residual @ residual / freedom * np.linalg.inv(design.T @ design)
     return coefficients, np.sqrt(np.diag(covariance)), residual
 
@@ -149,7 +149,7 @@ def _reciprocal(slowness: float, sigma: float) -> tuple[float, float]:
     return float(1.0 / slowness), float(sigma / slowness**2)
 
 
-def _independent(residual: Array) -> float:
+def independent_count(residual: Array) -> float:
     """How many independent values a row of correlated residuals is worth."""
     power = residual @ residual
     if power == 0.0:

@@ -21,23 +21,36 @@ def arc_length_strain(x: ArrayLike, y_smooth: ArrayLike, x_boundary: ArrayLike, 
     Returns:
         Shape [n_times]; NaN where fewer than two heights are known.
     """
-    x, y_smooth = np.asarray(x, dtype=float), np.asarray(y_smooth, dtype=float)
+    y_smooth = np.asarray(y_smooth, dtype=float)
     ends = np.asarray(x_boundary, dtype=float)
-    return np.array(
-        [1.0 - _arc(x, row, end, length) / length for row, end in zip(y_smooth, ends, strict=True)]
-    )
+    arcs = (arc_positions(x, row, start=end, end=length)[1] for row, end in zip(y_smooth, ends, strict=True))
+    return np.array([1.0 - arc / length for arc in arcs])
+
+
+def arc_positions(x: ArrayLike, height: ArrayLike, *, start: float, end: float) -> tuple[Array, float]:
+    """Positions along a curve from ``start`` on, and its length up to ``end`` [m].
+
+    Args:
+        x, height: of the curve [m], shape [n]; gaps (NaN) are bridged by straight lines, and the slopes of the
+            first and last known stretch continue to the ends.
+        start, end: x of the curve's ends [m].
+
+    Returns:
+        Shape [n], NaN where the height is unknown; NaN throughout if fewer than two heights are known.
+    """
+    heights = np.asarray(height, dtype=float)
+    known = np.isfinite(heights)
+    positions = np.full(heights.shape, np.nan)
+    if known.sum() < 2:
+        return positions, float("nan")
+    at = np.asarray(x, dtype=float)[known]
+    lengths = np.hypot(np.diff(at), np.diff(heights[known]))
+    stretch = lengths / np.diff(at)
+    along = (at[0] - start) * stretch[0] + np.concatenate([[0.0], np.cumsum(lengths)])
+    positions[known] = along
+    return positions, float(along[-1] + (end - at[-1]) * stretch[-1])
 
 
 def strain_rate(time: ArrayLike, strain: ArrayLike) -> Array:
     """Rate of strain by central differences in time [1/s], shape [n_times, ...]."""
     return np.gradient(np.asarray(strain, dtype=float), np.asarray(time, dtype=float), axis=0)
-
-
-def _arc(x: Array, height: Array, start: float, end: float) -> float:
-    known = np.isfinite(height)
-    x, height = x[known], height[known]
-    if x.size < 2:
-        return float("nan")
-    lengths = np.hypot(np.diff(x), np.diff(height))
-    stretch = lengths / np.diff(x)
-    return float(lengths.sum() + (x[0] - start) * stretch[0] + (end - x[-1]) * stretch[-1])

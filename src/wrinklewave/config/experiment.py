@@ -208,6 +208,17 @@ class SecondSeries(Section):
     calibration: AnyCalibration | None = None
 
 
+class Fit(Section):
+    """Which images of a quasi-static test Eq. 1 is fitted to."""
+
+    strains: Annotated[
+        tuple[NotNegative, Strain],
+        Field(
+            description="smallest and largest strain; leave period doubling out, and what the film did not survive"
+        ),
+    ] = (0.0, 0.99)
+
+
 class Experiment(Section):
     """A whole experiment file, made by :func:`load_experiment`, which checks it as a whole."""
 
@@ -219,6 +230,7 @@ class Experiment(Section):
     contact: Contact = Contact()
     wires: Wires | None = None
     second_series: SecondSeries | None = None
+    fit: Fit | None = None
     analysis: Analysis
 
     @model_validator(mode="before")
@@ -338,6 +350,8 @@ def _ranges(experiment: Experiment) -> Iterator[InputError]:
 def _kind(experiment: Experiment) -> Iterator[InputError]:
     if experiment.kind == "impact" and experiment.second_series:
         yield _misplaced("second_series", "quasi-static")
+    if experiment.kind == "impact" and experiment.fit:
+        yield _misplaced("fit", "quasi-static")
     if experiment.kind == "quasi-static" and experiment.wires:
         yield _misplaced("wires", "impact")
     if experiment.kind == "quasi-static" and experiment.contact.time is not None:
@@ -354,6 +368,13 @@ def _misplaced(section: str, kind: str) -> InputError:
 
 
 def _windows(experiment: Experiment) -> Iterator[InputError]:
+    if experiment.fit and not experiment.fit.strains[0] < experiment.fit.strains[1]:
+        yield InputError(
+            f"{list(experiment.fit.strains)} is empty",
+            key="fit.strains",
+            expected="the smallest strain, then the largest",
+            cure="swap or change them",
+        )
     length = experiment.sample.length
     for name in ("front_window", "amplitude_window"):
         low, high = getattr(experiment.analysis, name)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wrinklewave.experiments.paper_table import Row
+from wrinklewave.figures.compression import CompressionFigure
 from wrinklewave.figures.registry import FIGURES, FigureSpec
 from wrinklewave.figures.side_by_side import ComparisonFigure
 from wrinklewave.laboratory_frame import Array
@@ -115,7 +116,7 @@ def _is_number(value: object) -> bool:
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
 
 
-def picture(name: str, spec: FigureSpec | ComparisonFigure, file: Path) -> dict[str, str]:
+def picture(name: str, spec: FigureSpec | ComparisonFigure | CompressionFigure, file: Path) -> dict[str, str]:
     """A figure as the templates take it."""
     number = f"Fig. {spec.number}" if spec.number else ""
     return {

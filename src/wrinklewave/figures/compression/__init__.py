@@ -1,0 +1,24 @@
+"""Figures of a quasi-static test: the paper's 1A to E, S3 and S6; one module each, one registry."""
+
+from wrinklewave.figures.compression import (  # noqa: F401 - each registers its figure, in this order
+    fig_1abc,
+    fig_1d,
+    fig_1e,
+    fig_s3,
+    fig_s6,
+)
+from wrinklewave.figures.compression.registry import (
+    COMPRESSION_FIGURES,
+    CompressionFigure,
+    CompressionInputs,
+    ShownImage,
+    write_compression_figures,
+)
+
+__all__ = [
+    "COMPRESSION_FIGURES",
+    "CompressionFigure",
+    "CompressionInputs",
+    "ShownImage",
+    "write_compression_figures",
+]
