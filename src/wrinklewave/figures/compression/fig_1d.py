@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     "fig_1d_amplitude",
     number="1D",
     caption="Wrinkle amplitude (mean of the Hilbert envelope over the window) against the strain along the arc. "
-    "Dashed: Eq. 1 with the fitted critical strain and wavelength; solid: the same with the wrinkles that were there before.",
+    "Dashed: Eq. 1 with the fitted critical strain and wavelength; solid: the same with the wrinkles that were "
+    "there before.",
 )
 def amplitude_against_strain(inputs: CompressionInputs) -> Figure:
     """Measured amplitudes and the fit."""
