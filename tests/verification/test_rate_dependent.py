@@ -14,7 +14,16 @@ from wrinklewave.materials.moduli import Viscoelastic
 from wrinklewave.theory.bifurcation import bifurcation
 from wrinklewave.theory.growth import fastest_growth, growth_rate
 from wrinklewave.theory.plane_strain_relaxation import plane_strain_relaxation
-from wrinklewave.wrinkling.block_surface import block_surface
+from wrinklewave.wrinkling.block_elements import block_elements
+from wrinklewave.wrinkling.block_motion import (
+    BlockMotion,
+    answer,
+    block_motion,
+    displacements,
+    motion_at_rest,
+    motion_step,
+    undriven,
+)
 from wrinklewave.wrinkling.quasi_static import wrinkle_amplitude as eq_1
 from wrinklewave.wrinkling.rate_dependent import FilmLayer, wrinkle_amplitude
 from wrinklewave.wrinkling.rate_dependent_block import Block, wrinkles_on_block
@@ -176,17 +185,69 @@ def test_relaxing_plane_strain_modulus(verified: Verified) -> None:
     verified.error("relaxing plane-strain modulus", worst, 1e-12)
 
 
+def block_of(*, step: float, depth: float = 20e-3) -> BlockMotion:
+    """A block of 50 mm length."""
+    elements = block_elements(length=50e-3, depth=depth, n_cells=96)
+    return block_motion(elements, solid(nu=0.49), step=step)
+
+
+def plane_strain(motion: BlockMotion) -> float:
+    mu, K = motion.moduli.mu, motion.moduli.K
+    return 4 * mu * (3 * K + mu) / (3 * K + 4 * mu)
+
+
 def test_surface_of_a_block_pushed_along_itself(verified: Verified) -> None:
-    """Half-space under sin kX along its surface: traction k E'/2 per displacement (Johnson, Contact Mechanics). The
-    struck end is a plane of mirror symmetry; the elements are of second order: 0.5 % at 24 cells per wavelength."""
-    surface = block_surface(length=50e-3, depth=20e-3, nu=0.49, n_cells=96)
-    k = 2 * np.pi / 12.5e-3
-    w = np.zeros(surface.end.size)
-    w[:96] = np.sin(k * surface.nodes[:-1])
-    force = (surface.stiffness @ w)[:96] / surface.cell
-    middle = (surface.nodes[:-1] > 12.5e-3) & (surface.nodes[:-1] < 37.5e-3)
-    found = float(force[middle] @ w[:96][middle] / (w[:96][middle] @ w[:96][middle]))
-    verified.value("stiffness of a block's surface along itself", found, k / 2, relative=0.005)
+    """Half-space under a traction sin kX along its surface: displacement 2/(k E') per traction (Johnson, Contact
+    Mechanics). Steps of 1 s: no inertia. The struck end is a plane of mirror symmetry; the elements are of second
+    order: 0.5 % at 24 cells per wavelength."""
+    motion, k = block_of(step=1.0), 2 * np.pi / 12.5e-3
+    elements, every = motion.elements, np.ones(int(motion.elements.end.sum()), dtype=bool)
+    X = elements.nodes[:-1]
+    on_top = np.array([np.flatnonzero(row > 0)[0] for row in elements.shortening.toarray()])
+    pushed = np.zeros(elements.mass.size)
+    pushed[on_top] = elements.cell * np.sin(k * X)
+    within = answer(motion, motion.solve(pushed), every, gap=0.0)
+    u, _ = displacements(motion, within, np.zeros(X.size))
+    middle = (X > 12.5e-3) & (X < 37.5e-3)
+    waves = np.stack([np.sin(k * X), np.cos(k * X), np.ones(X.size), X], axis=1)[middle]
+    found = float(np.linalg.lstsq(waves, u[on_top][middle], rcond=None)[0][0])
+    expected = 2 / (k * plane_strain(motion))
+    verified.value("motion of a block's surface along itself", found, expected, relative=0.005)
+
+
+def test_wave_in_a_thin_block(verified: Verified) -> None:
+    """A third of the strain behind the front of a thin plate's longitudinal wave travels at sqrt(E'/rho): lateral
+    inertia makes the front an integral of Airy's function, which has reached 1/3 where its argument is zero."""
+    step, places = 4e-6, np.array([20, 70])
+    motion = block_of(step=step, depth=1e-3)
+    every = np.ones(int(motion.elements.end.sum()), dtype=bool)
+    state, strains = motion_at_rest(motion), []
+    for n in range(1, 1000):
+        within = answer(motion, undriven(state, motion), every, gap=-0.01 * step * n)
+        u, _ = displacements(motion, within, np.zeros(96))
+        state = motion_step(state, u, motion)
+        strains.append((motion.elements.shortening @ u)[places])
+    speed = np.sqrt(plane_strain(motion) / motion.density)
+    third = 0.01 / speed / 3
+    passed = step * (1 + np.argmax(np.array(strains) > third, axis=0))
+    found = float(np.diff(motion.elements.centres[places])[0] / np.diff(passed)[0])
+    verified.value("speed of a wave in a thin block", found, float(speed), relative=0.01, unit="m/s")
+
+
+def test_plate_pushes_the_end_and_never_pulls(verified: Verified) -> None:
+    """Nodes of the end that touch are where the plate is; the forces on the others are zero."""
+    motion = block_of(step=1e-5)
+    force = np.linspace(1.0, 0.0, 96)
+    touching = np.zeros(int(motion.elements.end.sum()), dtype=bool)
+    touching[-5:] = True
+    within = answer(motion, np.zeros(motion.elements.mass.size), touching, gap=1e-4)
+    u, pressing = displacements(motion, within, force)
+    verified.error(
+        "end held by a plate", float(np.abs(u[motion.elements.end][touching] / -1e-4 - 1).max()), 1e-9
+    )
+    assert (pressing[~touching] == 0.0).all()
+    strain = motion.elements.shortening @ u
+    np.testing.assert_allclose(strain, within.strain - within.compliance @ force, atol=1e-12)
 
 
 def test_uniform_strain_between_held_ends_stays_uniform(verified: Verified) -> None:

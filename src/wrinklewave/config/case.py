@@ -52,6 +52,13 @@ class Wrinkles(Section):
 
     model: Annotated[WrinkleModel, Field(description='left out: "quasi-static" with a film, else "none"')]
     averaging_depth: Annotated[PositiveLength, Field(description="D, in the undeformed state")]
+    wavelength: Annotated[
+        Literal["kept", "fastest"],
+        Field(
+            description="of rate-dependent wrinkles: one that they keep once selected, or several of which the fastest "
+            'grow; left out: "kept" with a sinusoidal imperfection, else "fastest"'
+        ),
+    ]
 
 
 class Hourglass(Section):

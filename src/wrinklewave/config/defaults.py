@@ -25,6 +25,7 @@ def fill_defaults(data: Table) -> dict[str, Any]:
         "wrinkles": {
             "model": "quasi-static" if "film" in data else "none",
             "averaging_depth": _m(height / 2),
+            "wavelength": "kept" if _imperfection(data) in (None, "sinusoidal") else "fastest",
         },
         "output": {
             "surface_interval": _s(end / 500),
@@ -48,6 +49,13 @@ def fill_defaults(data: Table) -> dict[str, Any]:
         if isinstance(section, Mapping):
             filled[name] = {**values, **section}
     return filled
+
+
+def _imperfection(data: Table) -> object:
+    """Kind of the film's imperfection, None without one."""
+    film = data.get("film")
+    given = film.get("imperfection") if isinstance(film, Mapping) else None
+    return given.get("kind") if isinstance(given, Mapping) else None
 
 
 def _from_substrate(substrate: object) -> dict[str, Any]:

@@ -12,23 +12,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from wrinklewave.config.imperfections import RandomImperfection, SinusoidalImperfection
 from wrinklewave.dynamics.boundary import position
 from wrinklewave.dynamics.drives import striker
 from wrinklewave.errors import RunError
 from wrinklewave.experiments.resolved_surface import resolved_wrinkles, smooth_displacement
+from wrinklewave.experiments.wrinkle_seeds import model_wavelength, wrinkle_seeds
 from wrinklewave.laboratory_frame import Array
 from wrinklewave.materials.moduli import substrate_moduli
-from wrinklewave.mesh.imperfection import imperfection_height
 from wrinklewave.theory.film import critical_values, film_material
 from wrinklewave.wrinkling import quasi_static
 from wrinklewave.wrinkling.profile import smooth_surface, wrinkled_surface
+from wrinklewave.wrinkling.seeds import ComplexArray
 
 if TYPE_CHECKING:
     from wrinklewave.config import Case
-
-RANDOM_WAVELENGTHS = 9
-"""Of a random imperfection in the rate-dependent model, evenly spaced in wavenumber over its band."""
 
 
 class SurfaceNodes(NamedTuple):
@@ -80,16 +77,7 @@ def seen_surface(case: Case, nodes: SurfaceNodes, x: Array, x_boundary: Array) -
     amplitude = _quasi_static(case, nodes) if model == "quasi-static" else _rate_dependent(case, nodes)
     wavelength = model_wavelength(case)
     heights = wrinkled_surface(nodes.X, nodes.x, nodes.y, amplitude, wavelength=wavelength, **seen)
-    return Seen(heights.wrinkled, heights.smooth, amplitude)
-
-
-def model_wavelength(case: Case) -> float:
-    """Undeformed wavelength [m] of a model's wrinkles: of a sinusoidal imperfection, else the critical one."""
-    assert case.film is not None  # a case with a wrinkling model has a film
-    imperfection = case.film.imperfection
-    if case.wrinkles.model == "rate-dependent" and isinstance(imperfection, SinusoidalImperfection):
-        return imperfection.wavelength
-    return critical_values(case.film, case.substrate)[1]
+    return Seen(heights.wrinkled, heights.smooth, np.abs(amplitude))
 
 
 def surface_strain(X: Array, x: Array, y: Array, *, filter_wavelength: float) -> Array:
@@ -112,8 +100,8 @@ def _quasi_static(case: Case, nodes: SurfaceNodes) -> Array:
     )
 
 
-def _rate_dependent(case: Case, nodes: SurfaceNodes) -> Array:
-    """Amplitude of every node; nodes strained beyond the model's range take that of the nearest one within."""
+def _rate_dependent(case: Case, nodes: SurfaceNodes) -> ComplexArray:
+    """Complex amplitude of every node; nodes strained beyond the model's range take that of the nearest one within."""
     from wrinklewave.wrinkling.rate_dependent import LARGEST_STRAIN
 
     cutoff = case.analysis.filter_wavelength
@@ -132,24 +120,29 @@ def _rate_dependent(case: Case, nodes: SurfaceNodes) -> Array:
     return amplitude[:, nearest]
 
 
-def _amplitude_of_strain(case: Case, time: Array, X: Array, strain: Array, gap: Array) -> Array:
-    from wrinklewave.wrinkling.rate_dependent import FilmLayer
-    from wrinklewave.wrinkling.rate_dependent_block import Block, wrinkles_on_block
+def _amplitude_of_strain(case: Case, time: Array, X: Array, strain: Array, gap: Array) -> ComplexArray:
+    from wrinklewave.wrinkling.rate_dependent import FilmLayer, at_times
+    from wrinklewave.wrinkling.rate_dependent_block import Block, cell_centres, wrinkles_on_block
 
-    film, block = case.film, case.block
-    assert film is not None  # checked with the case, as is the imperfection
-    wavelengths, imperfection = _seeds(case, X)
-    return wrinkles_on_block(
+    film, length = case.film, case.block.length
+    assert film is not None  # checked with the case
+    block = Block(length=length, depth=case.block.height / 2, film_end=length - film.end_gap)
+    cells = cell_centres(block)
+    seeds = wrinkle_seeds(case, cells)
+    wrinkles = wrinkles_on_block(
         time,
-        X,
-        strain,
-        block=Block(length=block.length, depth=block.height / 2, film_end=block.length - film.end_gap),
+        cells,
+        at_times(cells, X, strain.T).T,
+        block=block,
         film=FilmLayer(film.thickness, film_material(film, case.substrate)),
         substrate=substrate_moduli(case.substrate),
-        wavelengths=wavelengths,
-        imperfection=imperfection,
+        wavelengths=seeds.wavelengths,
+        imperfection=seeds.audible,
         gap=gap,
-    ).wrinkles.amplitude
+    ).wrinkles
+    growth = np.moveaxis(wrinkles.amplitudes / np.abs(seeds.audible), 1, 0)
+    growth = np.moveaxis(at_times(X, cells, growth), 0, 1)
+    return wrinkle_seeds(case, X).grown(growth, X, model_wavelength(case))
 
 
 def _gap(case: Case, nodes: SurfaceNodes) -> Array:
@@ -158,31 +151,3 @@ def _gap(case: Case, nodes: SurfaceNodes) -> Array:
         return np.zeros_like(nodes.time)
     plate = np.array([position(striker(case.drive), t) for t in nodes.time])
     return np.maximum(nodes.x[:, 0] - plate, 0.0)
-
-
-def _seeds(case: Case, X: Array) -> tuple[Array, Array]:
-    """Wavelengths [m] of the model's wrinkles, and the imperfection's amplitude [m] at each point and wavelength."""
-    assert case.film is not None
-    imperfection = case.film.imperfection
-    if isinstance(imperfection, RandomImperfection):
-        shortest, longest = imperfection.wavelengths
-        wavelengths = 1.0 / np.linspace(1 / longest, 1 / shortest, RANDOM_WAVELENGTHS)
-        return wavelengths, np.full(wavelengths.shape, imperfection.amplitude / np.sqrt(RANDOM_WAVELENGTHS))
-    return np.array([model_wavelength(case)]), _local_imperfection(case, X)[:, np.newaxis]
-
-
-def _local_imperfection(case: Case, X: Array) -> Array:
-    """Amplitude [m] at each point of the imperfection's part of the model's wavelength.
-
-    Twice its mean with exp(-i k X), weighted by a Hann window of two wavelengths.
-    """
-    assert case.film is not None
-    assert case.film.imperfection is not None
-    imperfection, wavelength = case.film.imperfection, model_wavelength(case)
-    if isinstance(imperfection, SinusoidalImperfection):
-        return np.full(X.shape, imperfection.amplitude)
-    offset = np.linspace(-wavelength, wavelength, 129)
-    weight = 0.5 * (1.0 + np.cos(np.pi * offset / wavelength))
-    weight = weight / weight.sum() * np.exp(-2j * np.pi * offset / wavelength)
-    height = imperfection_height(imperfection, X[:, None] + offset)
-    return 2.0 * np.abs((height - height.mean(axis=1, keepdims=True)) @ weight)

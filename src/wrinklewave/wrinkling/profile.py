@@ -42,7 +42,7 @@ def wrinkled_surface(
     Args:
         X: undeformed positions of the material points [m], shape [n_points], increasing.
         x_p, y_p: their positions [m], shape [n_times, n_points].
-        amplitude: their wrinkle amplitude [m], same shape.
+        amplitude: their wrinkle amplitude [m], same shape; complex where the phase is not that of the cosine.
         wavelength: of the wrinkles in the undeformed material [m].
         x: laboratory grid [m], shape [n_x], increasing.
         x_boundary: position of the struck end [m], shape [n_times].
@@ -73,7 +73,8 @@ def wrinkled_curve(
     Args:
         curve: the smooth surface, sampled at least ``SAMPLES_PER_WAVELENGTH`` times per wavelength.
         X: undeformed positions [m] at which the amplitude is known, shape [n_points], increasing.
-        amplitude: wrinkle amplitude [m], shape [n_times, n_points].
+        amplitude: wrinkle amplitude [m], shape [n_times, n_points], real or complex: the wrinkle is the real part of
+            amplitude * exp(2 pi i X / wavelength).
         wavelength: of the wrinkles in the undeformed material [m].
 
     Returns:
@@ -81,8 +82,8 @@ def wrinkled_curve(
     """
     from scipy.interpolate import PchipInterpolator  # keeps amplitudes >= 0, without overshoot at the onset
 
-    fine_amplitude = PchipInterpolator(
-        np.asarray(X, dtype=float), np.asarray(amplitude, dtype=float), axis=1
-    )(curve.X)
-    wrinkle = fine_amplitude * np.cos(2 * np.pi * curve.X / wavelength)
+    X, amplitude, phase = np.asarray(X, dtype=float), np.asarray(amplitude), 2 * np.pi * curve.X / wavelength
+    wrinkle = PchipInterpolator(X, amplitude.real, axis=1)(curve.X) * np.cos(phase)
+    if np.iscomplexobj(amplitude):
+        wrinkle -= PchipInterpolator(X, amplitude.imag, axis=1)(curve.X) * np.sin(phase)
     return curve.x + wrinkle * curve.normal_x, curve.y + wrinkle * curve.normal_y

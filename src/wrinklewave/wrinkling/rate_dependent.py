@@ -13,14 +13,14 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from wrinklewave.errors import InputError
 from wrinklewave.materials.moduli import Viscoelastic
 from wrinklewave.theory.growth import growth_rate
 from wrinklewave.wrinkling.rate_dependent_film import Array, film_table
 from wrinklewave.wrinkling.rate_dependent_flat import stepped_moduli
-from wrinklewave.wrinkling.rate_dependent_march import Bilayer, at_rest, shortening, wrinkle_step
+from wrinklewave.wrinkling.rate_dependent_march import Bilayer, at_rest, shortening_of_waves, wrinkle_step
 
 LARGEST_STRAIN = 0.6
 UNLOADING_RESERVE = 0.2
@@ -28,7 +28,7 @@ UNLOADING_RESERVE = 0.2
 LARGEST_INITIAL_SLOPE = 0.5
 STEPS_PER_TIME_SCALE = 4
 """The amplitudes then err by less than 0.1 % (the scheme is of second order)."""
-LEAST_STEPS, MOST_STEPS = 200, 2000
+LEAST_STEPS, MOST_STEPS = 200, 400
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,8 @@ def competing_wrinkles(
     """Follow wrinkles of several wavelengths at once: all shorten the same film, and the fastest prevails.
 
     Arguments as in :func:`wrinkle_amplitude`, with ``wavelengths`` of shape [n_wavelengths] and ``imperfection``
-    one amplitude for all, or of shape [n_wavelengths] or [n_points, n_wavelengths].
+    one amplitude for all, or of shape [n_wavelengths] or [n_points, n_wavelengths]; complex where the phases of the
+    waves are known: the film is then shortened by their sum, else by each.
     """
     time, strain = checked_history(time, strain)
     instants, bilayer, wavelengths = prepared(time, strain, film, substrate, wavelengths, imperfection)
@@ -126,8 +127,10 @@ def prepared(
     """
     lengths = _checked_wavelengths(wavelengths)
     wavenumbers = 2 * np.pi / lengths
-    slopes = _initial_slopes(imperfection, wavenumbers, strain.shape[1])
-    longer = shortening(slopes).sum(axis=1)  # strain by which the film is longer than flat to begin with
+    slopes, phases = _initial_slopes(imperfection, wavenumbers, strain.shape[1])
+    longer = shortening_of_waves(
+        slopes.T, phases
+    )  # strain by which the film is longer than flat to begin with
     highest = max(float(strain.max()), 0.0) + float(longer.max()) + reserve
     table = film_table(
         film.moduli,
@@ -145,6 +148,7 @@ def prepared(
         table=table,
         density=substrate.density / (substrate.mu_inf * wavenumbers**2),
         imperfection=slopes.T,
+        phases=phases,
         shortened=longer,
         step=step,
     )
@@ -162,10 +166,11 @@ def _march(strain: Array, bilayer: Bilayer) -> Array:
     return grown
 
 
-def at_times(instants: Array, times: Array, values: Array) -> Array:
+def at_times(instants: ArrayLike, times: ArrayLike, values: ArrayLike) -> Array:
     """Values [n_times, ...] interpolated linearly at other instants."""
     from scipy.interpolate import make_interp_spline
 
+    times = np.asarray(times)
     return make_interp_spline(times, values, k=1, axis=0)(np.clip(instants, times[0], times[-1]))
 
 
@@ -218,24 +223,27 @@ def _checked_wavelengths(wavelengths: ArrayLike) -> Array:
     return lengths
 
 
-def _initial_slopes(imperfection: ArrayLike, wavenumbers: Array, n_points: int) -> Array:
-    """k A_i of every point and wavenumber, shape [n_points, n_wavelengths]."""
-    amplitude = np.asarray(imperfection, dtype=float)
+def _initial_slopes(
+    imperfection: ArrayLike, wavenumbers: Array, n_points: int
+) -> tuple[Array, NDArray[np.complex128] | None]:
+    """k A_i of every point and wavenumber, shape [n_points, n_wavelengths], and exp(i phase), transposed."""
+    amplitude = np.asarray(imperfection)
     if amplitude.ndim == 1 and amplitude.size == n_points and wavenumbers.size == 1:
         amplitude = amplitude[:, np.newaxis]
     try:
-        amplitude = np.broadcast_to(amplitude, (n_points, wavenumbers.size))
+        slopes = np.broadcast_to(amplitude, (n_points, wavenumbers.size)) * wavenumbers
     except ValueError:
         raise InputError(
             f"imperfection has shape {amplitude.shape}",
             key="imperfection",
             expected=f"one amplitude, or shape [{n_points}, {wavenumbers.size}] (points, wavelengths)",
         ) from None
-    slopes = amplitude * wavenumbers
     if not (np.abs(slopes) < LARGEST_INITIAL_SLOPE).all():
         raise InputError(
             f"an imperfection is as steep as {np.abs(slopes).max():.3g}",
             key="imperfection",
             expected=f"2 pi amplitude / wavelength below {LARGEST_INITIAL_SLOPE}",
         )
-    return np.ascontiguousarray(slopes)
+    if not np.iscomplexobj(slopes):
+        return slopes, None
+    return np.abs(slopes), np.exp(1j * np.angle(slopes)).T

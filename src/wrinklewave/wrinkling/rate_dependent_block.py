@@ -2,14 +2,10 @@
 
 A film that is compressed pushes the surface apart. Where its force changes along the surface, it strains the
 substrate below it, over a distance of about h E'_f/E'_s, shorter while the substrate is stiff. So the strain of the
-film-free block, from a simulation of the substrate alone, is corrected by the motion w(X, t) along the surface with
-which the block answers the film's force N:
-
-    K (E' * w) = -dN/dX,    strain = strain without the film - dw/dX,    N = N(strain of the film, wrinkles included),
-
-K the stiffness of the block's surface (:mod:`wrinklewave.wrinkling.block_surface`), stiffened by the mean strain as
-a half-space is, E' * the relaxing plane-strain modulus. The struck end keeps to its plate or leaves it, as far as the
-plate lets it. Inertia of w is left out.
+film-free block, from a simulation of the substrate alone, is corrected by the motion with which the block answers the
+film's force (:mod:`wrinklewave.wrinkling.block_motion`): linear, with inertia and memory, one matrix for all steps.
+A block that is compressed already is stiffer along itself than that; so the force counts for less by that factor, which
+is exact where stress and strain do not vary over the depth.
 """
 
 from __future__ import annotations
@@ -18,13 +14,22 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from wrinklewave.errors import InputError, RunError
 from wrinklewave.materials.moduli import Viscoelastic
-from wrinklewave.theory.incremental import half_space_stiffness, prestressed_layer, stroh_matrix
-from wrinklewave.theory.plane_strain_relaxation import RelaxingModulus, plane_strain_relaxation
-from wrinklewave.wrinkling.block_surface import BlockSurface, block_surface
+from wrinklewave.wrinkling.block_elements import block_elements
+from wrinklewave.wrinkling.block_motion import (
+    Answer,
+    BlockMotion,
+    MotionState,
+    answer,
+    block_motion,
+    displacements,
+    motion_at_rest,
+    motion_step,
+    undriven,
+)
 from wrinklewave.wrinkling.rate_dependent import (
     CompetingWrinkles,
     FilmLayer,
@@ -34,6 +39,7 @@ from wrinklewave.wrinkling.rate_dependent import (
 )
 from wrinklewave.wrinkling.rate_dependent_film import Array
 from wrinklewave.wrinkling.rate_dependent_march import (
+    BegunStep,
     Bilayer,
     Meeting,
     WrinkleState,
@@ -52,7 +58,6 @@ STRAIN_RESERVE = 0.1
 TOLERANCE = 1e-5
 """Of the surface's strain."""
 MOST_ITERATIONS = 40
-STIFFENING_STRAINS = np.linspace(-0.1, 0.4, 11)
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,33 @@ class BlockWrinkles(NamedTuple):
 
     wrinkles: CompetingWrinkles
     strain: Array
+
+
+@dataclass(frozen=True)
+class Bearing:
+    """What the film pushes against.
+
+    Args:
+        motion: of the block.
+        film: force per width [N/m] of a nominal stress of 1 in the film, times the cell's length, shape [n_cells].
+    """
+
+    motion: BlockMotion
+    film: Array
+
+
+@dataclass(frozen=True)
+class BlockState:
+    """Wrinkles, the block's motion by the film, and the surface strain of that motion in this step and the last.
+
+    ``touching`` says which nodes of the struck end touch their plate.
+    """
+
+    wrinkles: WrinkleState
+    motion: MotionState
+    added: Array
+    added_last: Array
+    touching: NDArray[np.bool_]
 
 
 def wrinkles_on_block(
@@ -94,7 +126,7 @@ def wrinkles_on_block(
         substrate: relaxing moduli.
         wavelengths: of wrinkles and imperfection, undeformed [m], shape [n_wavelengths].
         imperfection: amplitudes of the stress-free film [m]: one, or shape [n_wavelengths], or
-            [n_points, n_wavelengths].
+            [n_points, n_wavelengths], complex where the phases of the waves are known.
         gap: distance of the film-free block's struck end from its plate [m], zero where they touch or where the end
             is moved by prescription; one, or shape [n_times].
 
@@ -108,22 +140,23 @@ def wrinkles_on_block(
         raise InputError(
             f"positions have shape {X.shape}", key="X", expected="an increasing position per point"
         )
-    surface = block_surface(length=block.length, depth=block.depth, nu=substrate.nu_inf, n_cells=CELLS)
-    centres = surface.centres
+    elements = block_elements(length=block.length, depth=block.depth, n_cells=CELLS)
+    centres = elements.centres
     at_cells = at_times(centres, X, strain.T).T
-    seed = np.asarray(imperfection, dtype=float)
+    seed = np.asarray(imperfection)
     if seed.ndim == 2:
         seed = at_times(centres, X, seed)
     instants, bilayer, lengths = prepared(
         time, at_cells, film, substrate, wavelengths, seed, reserve=STRAIN_RESERVE
     )
+    reach = float(lengths.max()) if lengths.size == 1 else float(np.median(lengths))
+    elements = replace(elements, shortening=_means(centres, reach) @ elements.shortening)
     bearing = Bearing(
-        surface=surface,
-        modulus=plane_strain_relaxation(substrate),
-        stiffening=_stiffening(substrate),
-        force_unit=substrate.mu_inf * film.thickness,
-        film=(centres < block.film_end).astype(float),
-        step=bilayer.step,
+        motion=block_motion(elements, substrate, step=bilayer.step),
+        film=substrate.mu_inf
+        * film.thickness
+        * elements.cell
+        * (centres < block.film_end).astype(np.float64),
     )
     gaps = np.interp(instants, time, np.broadcast_to(np.asarray(gap, dtype=float), time.shape))
     grown, strains = _march(at_times(instants, time, at_cells), gaps, bilayer, bearing)
@@ -137,132 +170,92 @@ def wrinkles_on_block(
     )
 
 
-@dataclass(frozen=True)
-class Bearing:
-    """What the film pushes against.
+def cell_centres(block: Block) -> Array:
+    """Undeformed positions [m] at which the model follows the wrinkles of a block."""
+    return (np.arange(CELLS) + 0.5) * block.length / CELLS
 
-    Args:
-        surface: stiffness of the block's surface, per plane-strain modulus.
-        modulus: the relaxing plane-strain modulus.
-        stiffening: factor on the stiffness at the strains ``STIFFENING_STRAINS``.
-        force_unit: force per width [N/m] of a nominal stress of 1 in the film.
-        film: 1 on the cells that carry the film, else 0, shape [n_cells].
-        step: length of the time steps [s].
+
+def _means(centres: Array, reach: float):  # type: ignore[no-untyped-def]
+    """Means over the cells within ``reach`` [m] on either side, by a Hann window, sparse, shape [n_cells, n_cells].
+
+    The window is folded back at the ends, so that the matrix is symmetric and even forces stay even.
+
+    A wrinkle feels the strain of its wavelength, not of a point: one that softens the film would else draw all strain
+    into a single cell.
     """
+    from scipy.sparse import csr_array
 
-    surface: BlockSurface
-    modulus: RelaxingModulus
-    stiffening: Array
-    force_unit: float
-    film: Array
-    step: float
+    def window(distance: Array) -> Array:
+        return np.where(distance < reach, 0.5 + 0.5 * np.cos(np.pi * distance / reach), 0.0)
 
-    @property
-    def keep(self) -> Array:
-        """What a term keeps of its stress over a step, shape [n_terms]."""
-        return np.exp(-self.step / self.modulus.times)
-
-    @property
-    def add(self) -> Array:
-        """Modulus with which a term takes up new strain in a step [Pa], shape [n_terms]."""
-        ratio = self.step / self.modulus.times
-        return -self.modulus.shares * np.expm1(-ratio) / ratio
-
-
-@dataclass(frozen=True)
-class SurfaceState:
-    """Motion of the surface along itself, by the film.
-
-    Args:
-        w: displacement of the moving nodes [m], shape [n_moving].
-        moved: in the last step [m].
-        relaxing: E' * w of the terms [Pa m], shape [n_terms, n_moving].
-    """
-
-    w: Array
-    moved: Array
-    relaxing: Array
-
-
-def _stiffening(substrate: Viscoelastic) -> Array:
-    """How much stiffer a half-space is along its surface at ``STIFFENING_STRAINS`` than unstrained."""
-
-    def along(strain: float) -> float:
-        layer = prestressed_layer(substrate, 1.0 - strain, unit=substrate.mu_inf)
-        Z = half_space_stiffness(stroh_matrix(layer, 1.0))
-        return float(Z[0, 0] - Z[0, 1] * Z[1, 0] / Z[1, 1])
-
-    return np.array([along(strain) for strain in STIFFENING_STRAINS]) / along(1e-9)
+    mirrored = (
+        2 * centres[-1] + centres[1] - centres[0] - centres
+    )  # at the held end, and at the struck one, -centres
+    weights = sum(window(np.abs(there - centres[:, np.newaxis])) for there in (centres, -centres, mirrored))
+    return csr_array(weights / window(np.abs(centres - centres[centres.size // 2])).sum())
 
 
 def _march(strain: Array, gaps: Array, bilayer: Bilayer, bearing: Bearing) -> tuple[Array, Array]:
     """Follow wrinkles and surface through film-free strains [n_steps, n_cells]: k A, and strains with the film."""
-    still = np.zeros(bearing.surface.end.size)
-    surface = SurfaceState(still, still, np.zeros((bearing.modulus.times.size, still.size)))
-    wrinkles = at_rest(bilayer)
+    none, touching = (
+        np.zeros(strain.shape[1]),
+        np.full(int(bearing.motion.elements.end.sum()), gaps[0] <= 0.0),
+    )
+    state = BlockState(at_rest(bilayer), motion_at_rest(bearing.motion), none, none, touching)
     grown, strains = np.empty((strain.shape[0], *bilayer.imperfection.shape)), np.empty_like(strain)
-    grown[0], strains[0] = wrinkles.top, strain[0]
+    grown[0], strains[0] = state.wrinkles.top, strain[0]
     for n in range(1, strain.shape[0]):
-        wrinkles, surface = block_step(wrinkles, surface, strain[n], gaps[n], bilayer, bearing)
-        grown[n], strains[n] = wrinkles.top, wrinkles.strain
+        state = block_step(state, strain[n], gaps[n], bilayer, bearing)
+        grown[n], strains[n] = state.wrinkles.top, state.wrinkles.strain
     return grown, strains
 
 
 def block_step(
-    wrinkles: WrinkleState,
-    surface: SurfaceState,
-    strain: Array,
-    gap: float,
-    bilayer: Bilayer,
-    bearing: Bearing,
-) -> tuple[WrinkleState, SurfaceState]:
+    state: BlockState, strain: Array, gap: float, bilayer: Bilayer, bearing: Bearing
+) -> BlockState:
     """Bring the block to the film-free ``strain`` [n_cells] within one step.
 
     Raises:
         RunError: if film and surface cannot be found in equilibrium.
     """
-    expected = strain + bearing.surface.shortening @ (surface.w + surface.moved)
-    begun = begin_step(wrinkles, expected, bilayer)
-    trial = replace(surface, w=surface.w + surface.moved)
-
-    def balanced(held: bool) -> tuple[Array, Meeting]:
-        w = trial.w.copy()
-        if held:
-            w[bearing.surface.end] = -gap
-        reached = strain + bearing.surface.shortening @ w
-        guess, slope = expected_film_strain(wrinkles, reached), wrinkles.slope
-        for _ in range(MOST_ITERATIONS):
-            met = meet_film(begun, reached, guess, slope, bilayer)
-            change = _correction(w, met, surface, held, bilayer, bearing)
-            strained = bearing.surface.shortening @ change
-            w, reached = w + change, reached + strained
-            guess, slope = met.film_strain + strained / met.slope, met.slope
-            if np.abs(strained).max() < TOLERANCE:
-                return w, met
-        raise RunError("film and surface do not come into equilibrium along the block")
-
-    touching = gap <= 0.0
-    w, met = balanced(held=touching)
-    if not touching and w[0] < -gap:  # the film would push the corner through the plate
-        w, met = balanced(held=True)
-    moved = w - surface.w
-    relaxing = bearing.keep[:, np.newaxis] * surface.relaxing + bearing.add[:, np.newaxis] * moved
-    return end_step(begun, met, bilayer), SurfaceState(w, moved, relaxing)
+    motion = bearing.motion
+    end, alone = motion.elements.end, undriven(state.motion, motion)
+    begun = begin_step(state.wrinkles, strain + 2 * state.added - state.added_last, bilayer)
+    film = bearing.film / _stiffening(begun, bilayer)
+    touching = state.touching if gap > 0.0 else np.ones_like(state.touching)
+    for _ in range(touching.size):  # nodes of the end meet the plate and leave it: it pushes, and never pulls
+        within = answer(motion, alone, touching, gap)
+        met, force = _balanced(state.wrinkles, begun, strain, within, film, bilayer)
+        u, pressing = displacements(motion, within, force)
+        now = np.where(touching, (pressing > 0.0) | (gap <= 0.0), u[end] < -gap)
+        if (now == touching).all():
+            break
+        touching = now
+    moved = motion_step(state.motion, u, motion)
+    return BlockState(end_step(begun, met, bilayer), moved, met.strain - strain, state.added, touching)
 
 
-def _correction(
-    w: Array, met: Meeting, surface: SurfaceState, held: bool, bilayer: Bilayer, bearing: Bearing
-) -> Array:
-    """Newton's step of the moving nodes towards equilibrium of film and surface [m]."""
-    stiffening = np.interp(met.strain.mean(), STIFFENING_STRAINS, bearing.stiffening)
-    K, B = stiffening * bearing.surface.stiffness, bearing.surface.shortening
-    acting = bearing.modulus.long_term + float(bearing.add.sum())
-    remembered = bearing.keep @ surface.relaxing - bearing.add.sum() * surface.w
-    force, rise = compressive_force(met, bilayer)
-    unit = bearing.force_unit * bearing.surface.cell * bearing.film
-    residual = K @ (acting * w + remembered) + (unit * force) @ B
-    stiffness = acting * K + B.T @ ((unit * rise)[:, np.newaxis] * B)
-    change = np.zeros_like(w)
-    free = ~bearing.surface.end if held else np.ones(w.size, dtype=bool)
-    change[free] = -np.linalg.solve(stiffness[np.ix_(free, free)], residual[free])
-    return change
+def _balanced(
+    wrinkles: WrinkleState, begun: BegunStep, strain: Array, within: Answer, film: Array, bilayer: Bilayer
+) -> tuple[Meeting, Array]:
+    """Film and wrinkles at the surface strain at which film and block push alike, and the film's forces, [n_cells]."""
+    without, compliance = strain + within.strain, within.compliance * film
+    reached, guess, slope = begun.strain, expected_film_strain(wrinkles, begun.strain), wrinkles.slope
+    for _ in range(MOST_ITERATIONS):
+        met = meet_film(begun, reached, guess, slope, bilayer)
+        force, rise = compressive_force(met, bilayer)
+        residual = reached - without + compliance @ force
+        change = -np.linalg.solve(np.eye(reached.size) + compliance * rise, residual)
+        reached = reached + change
+        guess, slope = met.film_strain + change / met.slope, met.slope
+        if np.abs(change).max() < TOLERANCE:
+            return met, film * (force + rise * change)
+    raise RunError("film and surface do not come into equilibrium along the block")
+
+
+def _stiffening(begun: BegunStep, bilayer: Bilayer) -> Array:
+    """How much more stress along itself a compressed block takes up per strain than one at rest, shape [n_cells]."""
+    along, across, between, _ = begun.flat.stiffness
+    mu, K = bilayer.substrate.mu_acting, bilayer.substrate.K_acting
+    now = begun.flat.axial_stress + (1.0 - begun.strain) ** 2 * (along - between**2 / across)
+    return now / (4 * mu * (3 * K + mu) / (3 * K + 4 * mu))

@@ -40,6 +40,8 @@ class Bilayer:
         table: the film's response.
         density: rho/(mu k^2) of the substrate [s^2], shape [M].
         imperfection: k A_i, shape [M, P].
+        phases: exp(i phase) of each wave, of which the sum shortens the film, shape [M, P]; None for waves of unknown
+            phase, which shorten it each by itself.
         shortened: strain by which the imperfection shortens the film, shape [P].
     """
 
@@ -48,6 +50,7 @@ class Bilayer:
     table: FilmTable
     density: Array
     imperfection: Array
+    phases: NDArray[np.complex128] | None
     shortened: Array
     step: float
 
@@ -244,6 +247,13 @@ def shortening(slope: Array) -> Array:
     return 1.0 - 2.0 / np.pi * ellipe(np.minimum(slope**2, 1.0))
 
 
+def shortening_of_waves(slopes: Array, phases: NDArray[np.complex128] | None) -> Array:
+    """Share of its length that a film loses to all waves on it, slopes and phases of shape [M, P]."""
+    if phases is None:
+        return shortening(slopes).sum(axis=0)
+    return shortening(np.abs((slopes * phases).sum(axis=0)))
+
+
 def _meet(film_strain: Array, begun: BegunStep, strain: Array, slope: Array, bilayer: Bilayer) -> Meeting:
     """Equilibrium of the interface under a film of the given strain [P]."""
     before, flat, below = begun.before, begun.flat, begun.below
@@ -264,8 +274,9 @@ def _meet(film_strain: Array, begun: BegunStep, strain: Array, slope: Array, bil
     determinant = np.where(unstable, 1.0, determinant)
     U0 = (k_01 * force[1] - k_11 * force[0]) / determinant
     V0 = (k_01 * force[0] - k_00 * force[1]) / determinant
-    shortened = shortening(V0 + flat.transverse_stretch * initial)
-    excess = film_strain - strain + np.where(unstable, 1.0, shortened).sum(axis=0) - bilayer.shortened
+    shortened = shortening_of_waves(V0 + flat.transverse_stretch * initial, bilayer.phases)
+    shortened = np.where(unstable.any(axis=0), 1.0, shortened)
+    excess = film_strain - strain + shortened - bilayer.shortened
     return Meeting(strain, film_strain, excess, slope, film, flat_film, U0, V0, V0 + jump)
 
 
