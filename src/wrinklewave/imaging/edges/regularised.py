@@ -19,7 +19,9 @@ from wrinklewave.imaging.arrays import Floats
 ORDER = 8  # p
 _LOSS = 0.25  # q / b^2 at the resolution
 _USUAL_SIGMA = 0.1  # px: standard uncertainty of a column below which q falls
-_FILL = 1e-3  # weight of columns without an edge, against straight lines across: keeps the equations regular
+_FILL = 1e-3  # weight of columns without an edge, against curves across gaps: keeps the equations regular
+_BESIDE = 8  # columns on either side of a gap that say how the surface goes into it
+_WIDEST_CURVE = 32  # columns of a gap; wider ones are crossed in a straight line
 
 
 def penalty(resolution: float, blur: float) -> float:
@@ -92,15 +94,46 @@ def uncertainty(factor: Floats, level_sigma: float) -> Floats:
 
 @allocating
 def _filled(rows: Floats) -> Floats:
-    """Straight lines across gaps."""
+    """Cubics across gaps, by the straight lines through the columns beside them; straight across wide ones."""
     filled = rows.copy()
     last = 0
     for i in range(1, rows.size):
         if np.isfinite(rows[i]):
-            for j in range(last + 1, i):
-                filled[j] = rows[last] + (rows[i] - rows[last]) * (j - last) / (i - last)
+            gap = i - last
+            if gap > 1:
+                left, left_slope = _line_beside(rows, last, -1)
+                right, right_slope = _line_beside(rows, i, 1)
+                if gap > _WIDEST_CURVE:
+                    left_slope = right_slope = (right - left) / gap
+                for j in range(last + 1, i):
+                    t = (j - last) / gap
+                    filled[j] = (
+                        left * (1.0 + 2.0 * t) * (1.0 - t) ** 2
+                        + right * t * t * (3.0 - 2.0 * t)
+                        + gap * t * (1.0 - t) * (left_slope * (1.0 - t) - right_slope * t)
+                    )
             last = i
     return filled
+
+
+@allocating
+def _line_beside(rows: Floats, column: int, direction: int) -> tuple[float, float]:
+    """Row at ``column`` and slope of the straight line through the known columns from there on in a direction."""
+    n, sx, sxx, sy, sxy = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(_BESIDE):
+        i = column + direction * k
+        if i < 0 or i >= rows.size or not np.isfinite(rows[i]):
+            break
+        x = float(direction * k)
+        n += 1.0
+        sx += x
+        sxx += x * x
+        sy += rows[i]
+        sxy += x * rows[i]
+    if n < 4.0:
+        return rows[column], 0.0
+    slope = (n * sxy - sx * sy) / (n * sxx - sx * sx)
+    return (sy - slope * sx) / n, slope
 
 
 @allocating
