@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from wrinklewave.config.reading import case_from_text, load_case
     from wrinklewave.experiments.compare import compare
     from wrinklewave.experiments.filming import film_run
+    from wrinklewave.experiments.measure import Measurement, measure
     from wrinklewave.experiments.simulate import Run, simulate
     from wrinklewave.experiments.simulated_surface import rewrinkled
     from wrinklewave.imaging.frames import open_recording
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Case",
+    "Measurement",
     "Run",
     "__version__",
     "analyse",
@@ -42,6 +44,7 @@ __all__ = [
     "film_run",
     "load_case",
     "load_experiment",
+    "measure",
     "open_recording",
     "read_surface",
     "rewrinkled",
@@ -53,12 +56,14 @@ __all__ = [
 _HOMES = {
     "Case": "config.case:Case",
     "Run": "experiments.simulate:Run",
+    "Measurement": "experiments.measure:Measurement",
     "analyse": "analysis.analyse:analyse",
     "case_from_text": "config.reading:case_from_text",
     "compare": "experiments.compare:compare",
     "film_run": "experiments.filming:film_run",
     "load_case": "config.reading:load_case",
     "load_experiment": "config.experiment:load_experiment",
+    "measure": "experiments.measure:measure",
     "open_recording": "imaging.frames:open_recording",
     "read_surface": "surface:read",
     "rewrinkled": "experiments.simulated_surface:rewrinkled",

@@ -26,7 +26,8 @@ Coordinates: ``time`` [s], ``x`` [m], ``X`` (point) [m]: the material points' un
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -123,6 +124,56 @@ def write(surface: xr.Dataset, path: str | Path) -> Path:
     check(surface).to_netcdf(partial, engine="h5netcdf", invalid_netcdf=False)
     partial.replace(target)
     return target
+
+
+class SurfaceFile:
+    """A surface motion that is written a few times at a time, so that it need never be in memory as a whole.
+
+    A context: the file appears under its name when all has been written, or not at all.
+
+    Args:
+        path: of the file.
+        time, x, X, attrs: as in :func:`surface_motion`.
+    """
+
+    def __init__(
+        self, path: str | Path, *, time: ArrayLike, x: ArrayLike, X: ArrayLike, attrs: dict[str, Any]
+    ) -> None:
+        import h5netcdf
+
+        self.path = Path(path)
+        self._partial = self.path.with_name(self.path.name + ".part")
+        self._file = h5netcdf.File(self._partial, "w")
+        axes = {"time": ("time", time, "s"), "x": ("x", x, "m"), "X": ("point", X, "m")}
+        self._file.dimensions = {dimension: np.size(values) for dimension, values, _ in axes.values()}
+        for name, (dimension, values, unit) in axes.items():
+            self._create(name, (dimension,), unit)[:] = np.asarray(values, dtype=float)
+        self._file.attrs.update(attrs)
+
+    def write(self, name: str, values: ArrayLike, first: int = 0) -> None:
+        """Write values of a variable from the time with number ``first`` on, shaped as in the module's table."""
+        _known(name)
+        values = np.asarray(values, dtype=float)
+        if name not in self._file.variables:
+            self._create(name, DIMENSIONS[name], UNITS[name])
+        self._file.variables[name][first : first + values.shape[0]] = values
+
+    def _create(self, name: str, dimensions: tuple[str, ...], unit: str) -> Any:
+        variable = self._file.create_variable(name, dimensions, "f8", fillvalue=np.nan)
+        variable.attrs["units"] = unit
+        if "point" in dimensions and name != "X":
+            variable.attrs["coordinates"] = "X"
+        return variable
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+        if error is None:
+            self._partial.replace(self.path)
 
 
 def read(path: str | Path) -> xr.Dataset:

@@ -94,7 +94,14 @@ def test_figures_without_their_inputs_are_left_out(inputs: figures.FigureInputs,
     )
     files = figures.write_all(tmp_path, bare)
     numbers = {figures.FIGURES[name].number for name in files}
-    assert numbers == {"2C", "2D", "3", "4B", "5D"}
+    assert numbers == {"2C", "2D", "3", "4B", "5D", "S5"}
+
+
+def test_a_measured_surface_motion_is_shown_under_the_papers_numbers_for_it() -> None:
+    specs = [spec.of("measurement") for spec in figures.FIGURES.values()]
+    assert {"2B", "4A", "5C"} <= {spec.number for spec in specs}
+    assert not {"2C", "4B", "5D"} & {spec.number for spec in specs}
+    assert len({spec.name for spec in specs}) == len(specs)
 
 
 def test_a_sample_at_rest_can_be_drawn(tmp_path: Path) -> None:

@@ -14,7 +14,8 @@ from wrinklewave import surface
 from wrinklewave.config import load_case
 from wrinklewave.dynamics.fields import FIELDS
 from wrinklewave.errors import InputError, RunError
-from wrinklewave.experiments.simulate import Outcome, output_times, simulate
+from wrinklewave.experiments.interruption import Outcome
+from wrinklewave.experiments.simulate import output_times, simulate
 
 QUICK = Path(__file__).parents[2] / "examples" / "quick.toml"
 SMALL = (

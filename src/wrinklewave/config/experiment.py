@@ -162,6 +162,14 @@ class Region(Section):
     rows: Annotated[PixelRange | None, Field(description="first, and the one after the last")] = None
 
 
+class EdgeDetection(Section):
+    """How the surface is found."""
+
+    resolution: Annotated[
+        float, Field(ge=4, le=200, description="shortest wavelength kept along the surface, in pixels")
+    ] = 10.0
+
+
 class Contact(Section):
     """When the striker touches the sample."""
 
@@ -227,6 +235,7 @@ class Experiment(Section):
     calibration: AnyCalibration
     sample: Sample
     region: Region = Region()
+    edge: EdgeDetection = EdgeDetection()
     contact: Contact = Contact()
     wires: Wires | None = None
     second_series: SecondSeries | None = None

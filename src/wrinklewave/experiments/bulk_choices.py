@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.paper_statements import BULK_CHOICES
-from wrinklewave.experiments.simulate import Outcome, Progress, Run, simulate
+from wrinklewave.experiments.simulate import Progress, Run, simulate
 
 if TYPE_CHECKING:
     from pathlib import Path

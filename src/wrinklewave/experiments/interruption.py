@@ -1,4 +1,4 @@
-"""Ctrl-C and termination as a wish that a long computation asks for at its own convenience."""
+"""How long computations end; Ctrl-C and termination as a wish that they ask for at their own convenience."""
 
 from __future__ import annotations
 
@@ -6,7 +6,16 @@ import signal
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from enum import Enum
 from types import FrameType
+
+
+class Outcome(Enum):
+    """How a long computation ended; the value is the message."""
+
+    FINISHED = "finished"
+    INTERRUPTED = "interrupted; go on with --resume"
+    FAILED = "failed"
 
 
 @contextmanager

@@ -58,15 +58,7 @@ class RunFolder:
             InputError: if it holds a run already and neither ``resume`` nor ``overwrite`` says what to do.
         """
         folder = cls(path)
-        if path.exists() and not path.is_dir():
-            raise InputError("is a file", file=path, expected="a folder for the results")
-        if (path / "case.toml").exists() and not (resume or overwrite):
-            raise InputError(
-                "holds a run already",
-                file=path,
-                cure="--resume goes on with it, --overwrite replaces it, --out takes another folder",
-            )
-        path.mkdir(parents=True, exist_ok=True)
+        claim_folder(path, "case.toml", "a run", may_exist=resume or overwrite)
         if not resume:
             folder._clear()
         write_text(path / "case.toml", case.to_toml())
@@ -101,6 +93,29 @@ class RunFolder:
             (self.path / name).unlink(missing_ok=True)
         for file in (*self.frames.glob("*"), *(self.path / "figures").glob("*.png")):
             file.unlink()
+
+
+def claim_folder(path: Path, marker: str, what: str, *, may_exist: bool) -> None:
+    """Make a folder for results unless it holds other ones.
+
+    Args:
+        path: of the folder.
+        marker: file that says that ``what`` lies there already.
+        what: is to be put there, in words.
+        may_exist: whether it may be there already.
+
+    Raises:
+        InputError: if it is there and must not be, or if ``path`` is a file.
+    """
+    if path.exists() and not path.is_dir():
+        raise InputError("is a file", file=path, expected="a folder for the results")
+    if (path / marker).exists() and not may_exist:
+        raise InputError(
+            f"holds {what} already",
+            file=path,
+            cure="--resume goes on with it, --overwrite replaces it, --out takes another folder",
+        )
+    path.mkdir(parents=True, exist_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

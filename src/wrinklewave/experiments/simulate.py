@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,7 +18,7 @@ from wrinklewave.dynamics.model import build_model
 from wrinklewave.dynamics.simulation import HISTORY, Simulation
 from wrinklewave.environment import choose_device, processor, versions
 from wrinklewave.errors import InputError, RunError
-from wrinklewave.experiments.interruption import interruptible
+from wrinklewave.experiments.interruption import Outcome, interruptible
 from wrinklewave.experiments.recording import FieldStore, SurfaceRecorder
 from wrinklewave.experiments.run_folder import RunFolder
 from wrinklewave.experiments.run_summary import energy_scalars, material_scalars
@@ -35,12 +34,8 @@ if TYPE_CHECKING:
     from wrinklewave.mesh.block import GridMesh
 
 
-class Outcome(Enum):
-    """How a run ended; the value is the message."""
-
-    FINISHED = "finished"
-    INTERRUPTED = "interrupted; go on with --resume"
-    FAILED = "failed"
+MEANINGFUL_SHARE = 0.05
+"""Part of the run after which its imbalance of energy is shown: before, there is hardly any work to compare it with."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +59,20 @@ class Progress:
     imbalance: float
     seconds: float
     seconds_left: float
+
+    @property
+    def share(self) -> float:
+        """Of the whole that is done."""
+        return self.time / self.end_time
+
+    def __str__(self) -> str:
+        parts = [f"t = {self.time * 1e3:.3f} of {self.end_time * 1e3:g} ms", f"step {self.step}"]
+        if self.updates_per_second > 0:
+            parts.append(f"{self.updates_per_second / 1e6:.0f} M updates/s")
+        if self.share > MEANINGFUL_SHARE:
+            parts.append(f"energy off by {self.imbalance:.1e}")
+        known = self.seconds_left == self.seconds_left
+        return ", ".join([*parts, f"{self.seconds_left:.0f} s left" if known else "starting"])
 
 
 @dataclass(eq=False)

@@ -13,6 +13,7 @@ from wrinklewave.figures import (  # noqa: F401 - each registers its figure, in 
     fig_energies,
     fig_s2,
     fig_s4,
+    fig_s5,
 )
 from wrinklewave.figures.inputs import FigureInputs, StrainSnapshots, figure_inputs
 from wrinklewave.figures.registry import FIGURES, FigureSpec, write_all

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     "maximum (scale cut at -0.25). Dashed red: struck end; white: wavefront, free line (dashed) "
     "and line through the origin (dotted); dash-dotted: paths of material points.",
     possible=lambda inputs: inputs.surface_moves,
+    measured=("fig_2b_displacement", "2B"),
 )
 def displacement_map(inputs: FigureInputs) -> Figure:
     """Map of U_y / U_y,max with the struck end, the speed lines and material points."""

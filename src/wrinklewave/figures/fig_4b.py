@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     "front (amplitude passes the threshold); green: the wavefront; dash-dotted: paths of material"
     " points.",
     possible=lambda inputs: inputs.surface_moves,
+    measured=("fig_4a_wrinkles", "4A"),
 )
 def wrinkle_map(inputs: FigureInputs) -> Figure:
     """Map of the height of the wrinkles."""

@@ -22,6 +22,7 @@ SHORTEST, LONGEST = 0.5, 2.0
     " wavelength; dashed green: wavelength of Eq. 1 at the strain of Fig. 5A's dotted line; "
     "white: Eq. 1 with the strain of Fig. 5A.",
     possible=lambda inputs: inputs.surface_moves,
+    measured=("fig_5c_wavelength", "5C"),
 )
 def wavelength_figure(inputs: FigureInputs) -> Figure:
     """Map of the spectra over time (to the right) and wavelength (upwards)."""

@@ -56,10 +56,13 @@ def draw_speed(
 
 
 def draw_material_points(axes: Axes, inputs: FigureInputs, *, colour: str = "black") -> None:
-    """Paths of the material points that start at the chosen positions."""
+    """Paths of material points: all probe wires, or of many points those that start at the chosen positions."""
     subject = inputs.subject
-    for number, position in enumerate(inputs.positions):
-        point = int(np.abs(subject.X - position).argmin())
+    if subject.kind == "measurement":
+        points = list(range(subject.X.size))
+    else:
+        points = [int(np.abs(subject.X - position).argmin()) for position in inputs.positions]
+    for number, point in enumerate(points):
         label = "material points" if number == 0 else None
         axes.plot(
             MILLI * subject.x_p[:, point], MILLI * subject.time, "-.", color=colour, lw=1.0, label=label

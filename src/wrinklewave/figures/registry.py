@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,7 @@ class FigureSpec:
         caption: what it shows.
         draw: makes it.
         possible: whether the inputs hold what it needs.
+        measured: name and number of the same figure in the paper's arrangement where the surface motion was measured.
     """
 
     name: str
@@ -33,13 +34,25 @@ class FigureSpec:
     caption: str
     draw: Draw
     possible: Callable[[FigureInputs], bool]
+    measured: tuple[str, str] | None = None
+
+    def of(self, kind: str) -> FigureSpec:
+        """The figure as it is called for a "simulation" or a "measurement"."""
+        if kind != "measurement" or self.measured is None:
+            return self
+        return replace(self, name=self.measured[0], number=self.measured[1])
 
 
 FIGURES: dict[str, FigureSpec] = {}
 
 
 def figure(
-    name: str, *, number: str, caption: str, possible: Callable[[FigureInputs], bool] = lambda inputs: True
+    name: str,
+    *,
+    number: str,
+    caption: str,
+    possible: Callable[[FigureInputs], bool] = lambda inputs: True,
+    measured: tuple[str, str] | None = None,
 ) -> Callable[[Draw], Draw]:
     """Register a function that draws a figure; it is called with the style of this package in force."""
 
@@ -50,7 +63,7 @@ def figure(
             with matplotlib.rc_context(RC):
                 return draw(inputs)
 
-        FIGURES[name] = FigureSpec(name, number, caption, styled, possible)
+        FIGURES[name] = FigureSpec(name, number, caption, styled, possible, measured)
         return styled
 
     return register
@@ -65,7 +78,7 @@ def write_all(folder: str | Path, inputs: FigureInputs) -> dict[str, Path]:
     files = {}
     for name, spec in FIGURES.items():
         if spec.possible(inputs):
-            files[name] = folder / f"{name}.png"
+            files[name] = folder / f"{spec.of(inputs.subject.kind).name}.png"
             drawing = spec.draw(inputs)
             with matplotlib.rc_context(RC):
                 drawing.savefig(

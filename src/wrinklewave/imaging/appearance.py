@@ -49,6 +49,7 @@ class Appearance:
         background_gradient, sample_gradient: the same per pixel down the column.
         struck_end, held_end: columns of the sample's ends; infinite if out of sight.
         strip_depth: rows between ``line`` and the strip in the sample's body.
+        noise: standard deviation of a pixel's noise [grey values].
         striker: what the striker looks like between background (0) and sample (1); None if there is none.
     """
 
@@ -63,6 +64,7 @@ class Appearance:
     struck_end: float
     held_end: float
     strip_depth: float
+    noise: float
     striker: float | None = None
 
     @property
@@ -75,6 +77,11 @@ class Appearance:
         """Difference of grey values across the surface."""
         return float(np.median(np.abs(self.sample - self.background)))
 
+    @property
+    def contrast_to_noise(self) -> float:
+        """Step of grey values across the surface over the noise of a pixel."""
+        return self.contrast / self.noise
+
     def strip(self, image: Pixels, top: Floats, n_rows: int) -> Floats:
         """Means of ``n_rows`` rows from ``top`` [n_columns] down as shares between background (0) and sample (1)."""
         columns = np.arange(top.size)
@@ -85,8 +92,8 @@ class Appearance:
 
     def body(self, image: Pixels) -> Floats:
         """Shares in the strip of the sample's body, shape [n_columns]."""
-        top = self.line[0] + self.line[1] * np.arange(image.shape[1]) + self.strip_depth
-        return self.strip(image, top, STRIP_ROWS)
+        columns = np.arange(image.shape[1], dtype=np.float64)
+        return self.strip(image, self.line[0] + self.line[1] * columns + self.strip_depth, STRIP_ROWS)
 
 
 def clearance(blur: float) -> float:
@@ -104,21 +111,19 @@ def learn_appearance(undeformed: Sequence[Image], others: Sequence[Image]) -> Ap
     Raises:
         InputError: if no surface is seen, or less of the sample than is needed.
     """
-    undeformed, others = (
-        [np.ascontiguousarray(image, dtype=np.float32) for image in images] for images in (undeformed, others)
-    )
-    mean = np.asarray(np.mean(undeformed, axis=0, dtype=np.float64), dtype=np.float32)
+    images = [np.ascontiguousarray(image, dtype=np.float32) for image in undeformed]
+    mean = np.asarray(np.mean(images, axis=0, dtype=np.float64), dtype=np.float32)
     brighter = _sample_is_brighter(mean)
     start = coarse_edge(mean, 1.0 if brighter else -1.0)
     levels = find_levels(mean, start, np.full(start.size, _FIRST_BLUR), 0, start.size)
     _check_contrast(levels)
     struck, held = _ends(mean, start, levels)
     first, stop = _columns(struck, held, start.size, margin=4.0)
-    blur = float(np.median([_blur(image, brighter, first, stop) for image in undeformed[:_BLUR_FRAMES]]))
+    blur = float(np.median([_blur(image, brighter, first, stop) for image in images[:_BLUR_FRAMES]]))
     optics = Optics(blur, brighter)
     first, stop = _columns(struck, held, start.size, margin=clearance(blur))
     finder = EdgeFinder(optics)
-    edges = [finder.find(image, first=first, stop=stop) for image in undeformed]
+    edges = [finder.find(image, first=first, stop=stop) for image in images]
     surface, sigma = _mean_surface(edges)
     line = _line(surface)
     levels = find_levels(mean, start, np.full(start.size, blur), first, stop)
@@ -137,6 +142,7 @@ def learn_appearance(undeformed: Sequence[Image], others: Sequence[Image]) -> Ap
         struck_end=struck,
         held_end=held,
         strip_depth=_strip_depth(mean.shape[0], line, start.size, blur),
+        noise=float(np.median([edge.noise for edge in edges])),
     )
     return replace(appearance, striker=_striker(appearance, others))
 
@@ -288,11 +294,11 @@ def _strip_depth(n_rows: int, line: tuple[float, float], n_columns: int, blur: f
     return depth
 
 
-def _striker(appearance: Appearance, frames: Sequence[Pixels]) -> float | None:
+def _striker(appearance: Appearance, frames: Sequence[Image]) -> float | None:
     """Likeness of what stands left of the sample and is neither background nor sample; None if nothing does."""
     seen: list[float] = []
     for image in frames:
-        body = appearance.body(image)
+        body = appearance.body(np.ascontiguousarray(image, dtype=np.float32))
         unlike = np.abs(body - 1.0) > _NOT_LIKE
         last = int(min(appearance.held_end, body.size) - appearance.clearance)
         beside = np.flatnonzero(unlike[:last])

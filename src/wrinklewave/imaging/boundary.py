@@ -17,6 +17,7 @@ from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 from wrinklewave.imaging.steps import Steps, fit_steps
 
 _STRIPS = 4  # depths
+_FACE_ROWS = 64  # of all strips together
 _RUN = 3  # columns unlike the sample that end it
 _REACH = 4.0  # blurs that a step reaches to either side
 _MARGIN = 4  # columns more that are fitted
@@ -61,28 +62,27 @@ class _Faces(NamedTuple):
     contact: float = float("nan")
 
 
-def find_struck_end(image: Pixels, coarse: Floats, appearance: Appearance, noise: float) -> StruckEnd:
+def find_struck_end(image: Pixels, coarse: Floats, appearance: Appearance) -> StruckEnd:
     """Find the struck end, and the striker where there is one.
 
     Args:
         image: grey values, shape [n_rows, n_columns].
         coarse: row of the surface in every column to about a pixel, shape [n_columns].
         appearance: of the recording.
-        noise: standard deviation of a pixel's noise [grey values].
     """
     body = appearance.body(image)
     rough = rough_struck_end(body, appearance)
     if not np.isfinite(rough):
         return NOT_SEEN
-    faces = _faces(body, noise / appearance.contrast / np.sqrt(STRIP_ROWS), rough, appearance)
-    beside = coarse[int(rough) + 2 : int(rough) + 12]
+    faces = _faces(body, 1.0 / appearance.contrast_to_noise / np.sqrt(STRIP_ROWS), rough, appearance)
+    beside = coarse[int(rough) + 2 : int(rough + _REACH * appearance.optics.blur) + 2 * _LEVEL_COLUMNS + 2]
     if beside.size == 0 or not np.isfinite(faces.end):
         return NOT_SEEN
     top = float(beside.max()) + 3.5 * appearance.optics.blur + 2.0
-    n_rows = min(STRIP_ROWS, int(image.shape[0] - top)) // _STRIPS
+    n_rows = min(_FACE_ROWS, int(image.shape[0] - top)) // _STRIPS
     if n_rows < 1:
         return NOT_SEEN
-    sigma = noise / appearance.contrast / np.sqrt(n_rows)
+    sigma = 1.0 / appearance.contrast_to_noise / np.sqrt(n_rows)
     rows = (top + n_rows * (np.arange(_STRIPS) + 0.5) - 0.5).astype(np.float64)
     ends = np.array(
         [

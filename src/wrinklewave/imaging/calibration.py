@@ -49,18 +49,22 @@ class PixelMap:
         return self.origin[0] + along * cos - out * sin, self.origin[1] - along * sin - out * cos
 
 
-def calibrate(experiment: Experiment, appearance: Appearance) -> PixelMap:
+def calibrate(experiment: Experiment, appearance: Appearance, struck_end: float) -> PixelMap:
     """The map of an experiment's pixels, from its calibration and the sample at rest.
 
     The undeformed surface is the x-axis, wherever it points in the image.
+
+    Args:
+        experiment: with the calibration.
+        appearance: of the sample at rest.
+        struck_end: column of its struck end at rest; not finite if that is out of sight.
 
     Raises:
         InputError: if the scale is to be taken from the sample and its ends are not both seen.
     """
     row, slope = appearance.line
     tilt = -float(np.arctan(slope))
-    struck = appearance.struck_end
-    if not np.isfinite(struck):
+    if not np.isfinite(struck_end):
         raise InputError(
             "the struck end of the sample is not seen in the undeformed frames",
             key="region.columns",
@@ -68,18 +72,18 @@ def calibrate(experiment: Experiment, appearance: Appearance) -> PixelMap:
             cure="check calibration.x_axis, and give more columns",
         )
     return PixelMap(
-        pixel_size=_pixel_size(experiment, appearance, tilt),
-        origin=(struck, row + slope * struck),
+        pixel_size=_pixel_size(experiment, (struck_end, appearance.held_end), tilt),
+        origin=(struck_end, row + slope * struck_end),
         tilt=tilt,
         height=0.5 * (experiment.sample.height or 0.0),
     )
 
 
-def _pixel_size(experiment: Experiment, appearance: Appearance, tilt: float) -> float:
+def _pixel_size(experiment: Experiment, seen: tuple[float, float], tilt: float) -> float:
     calibration = experiment.calibration
     if calibration.kind != "sample-length":
         return calibration.pixel_size
-    ends = calibration.ends or (appearance.struck_end, appearance.held_end)
+    ends = calibration.ends or seen
     columns = abs(ends[1] - ends[0])
     if not np.isfinite(columns):
         raise InputError(

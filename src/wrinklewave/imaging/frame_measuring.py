@@ -7,12 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from wrinklewave.imaging.appearance import Appearance
-from wrinklewave.imaging.arrays import Floats
 from wrinklewave.imaging.boundary import StruckEnd, find_struck_end
-from wrinklewave.imaging.edges import Edge, EdgeFinder
+from wrinklewave.imaging.edges import RESOLUTION, Edge, EdgeFinder
 from wrinklewave.imaging.edges.locking import PixelLocking
 from wrinklewave.imaging.frames import Image
-from wrinklewave.imaging.wires import WireLook, WireSightings, find_wires, hidden_by_wires
+from wrinklewave.imaging.wires import NO_WIRES, WireLook, WireSightings, find_wires, hidden_by_wires
 
 
 @dataclass(frozen=True)
@@ -33,19 +32,18 @@ class FrameMeasurement:
 
 
 class FrameMeasurer:
-    """Measures frames of one recording, each on its own.
+    """Measures frames of one recording, each on its own, from any number of threads.
 
     Args:
         appearance: of the recording at rest.
         wires: what its wires look like; None if there are none.
-        resolution: along the surface [px].
-        noise: standard deviation of a pixel's noise in the undeformed frames [grey values].
+        resolution: shortest wavelength to keep along the surface [px].
     """
 
     def __init__(
-        self, appearance: Appearance, *, wires: WireLook | None, resolution: float, noise: float
+        self, appearance: Appearance, *, wires: WireLook | None = None, resolution: float = RESOLUTION
     ) -> None:
-        self.appearance, self.wires, self.noise = appearance, wires, noise
+        self.appearance, self.wires = appearance, wires
         self.finder = EdgeFinder(appearance.optics, resolution=resolution)
 
     def measure(self, frame: Image) -> FrameMeasurement:
@@ -53,22 +51,14 @@ class FrameMeasurer:
         image = np.ascontiguousarray(frame, dtype=np.float32)
         look = self.appearance
         coarse = self.finder.coarse(image)
-        end = find_struck_end(image, coarse, look, self.noise)
+        end = find_struck_end(image, coarse, look)
         first = int(np.ceil(end.column + look.clearance)) if np.isfinite(end.column) else 0
         stop = int(min(look.held_end - look.clearance + 1, image.shape[1]))
         rough = self.finder.rough(image, coarse, first=first, stop=stop)
-        if self.wires is None:
-            wires, hidden = NO_WIRES, None
-        else:
-            wires = find_wires(image, rough.rows, look, self.wires, self.noise)
+        wires, hidden = NO_WIRES, None
+        if self.wires is not None and np.isfinite(rough.rows).any():
+            wires = find_wires(image, rough.rows, look, self.wires)
             hidden = hidden_by_wires(wires, self.wires, look, image.shape[1])
         edge = self.finder.fine(image, rough, hidden)
         locking = PixelLocking.of(edge.rows, np.where(edge.valid, edge.column_rows - edge.rows, np.nan))
         return FrameMeasurement(edge, end, wires, locking)
-
-
-def _none() -> Floats:
-    return np.zeros(0)
-
-
-NO_WIRES = WireSightings(_none(), _none(), _none(), _none(), 0.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wrinklewave.imaging.arrays import Floats
 from wrinklewave.imaging.wires import WireLook, WireSightings
@@ -144,7 +145,7 @@ def _bridged(column: Floats, sigma: Floats) -> WireTracks:
     return WireTracks(column, sigma, tuple(gaps))
 
 
-def _gaps(known: Floats, n_frames: int) -> list[tuple[int, int]]:
+def _gaps(known: NDArray[np.intp], n_frames: int) -> list[tuple[int, int]]:
     """Stretches of frames that are not among the ``known`` ones."""
     bounds = [-1, *known.tolist(), n_frames]
     return [(int(a) + 1, int(b)) for a, b in pairwise(bounds) if b - a > 1]

@@ -100,16 +100,13 @@ def learn_wires(
     return WireLook(columns, width, float(np.median(heights)), half)
 
 
-def find_wires(
-    image: Pixels, rows: Floats, appearance: Appearance, look: WireLook, noise: float
-) -> WireSightings:
+def find_wires(image: Pixels, rows: Floats, appearance: Appearance, look: WireLook) -> WireSightings:
     """Find what looks like a wire above the surface of a frame.
 
     Args:
         image: grey values, shape [n_rows, n_columns].
         rows: row of the surface, bridged where wires hide it, NaN beside the sample, shape [n_columns].
         appearance, look: of the recording.
-        noise: standard deviation of a pixel's noise [grey values].
     """
     blur = appearance.optics.blur
     half = look.half
@@ -117,7 +114,7 @@ def find_wires(
     band = 0.5 * (far + near)
     seen = _fit_height(look, blur)
     peaks, _ = _peaks(np.sign(look.height) * band, _FAINTEST * seen)
-    sigma = noise / appearance.contrast / np.sqrt(half)
+    sigma = 1.0 / appearance.contrast_to_noise / np.sqrt(half)
     found = [(_fit(far, peak, look.width, blur), _fit(near, peak, look.width, blur)) for peak in peaks]
     halves = np.array([[bar.position for bar in pair] for pair in found]).reshape(-1, 2)
     variances = sigma**2 * np.array([[bar.variance for bar in pair] for pair in found]).reshape(-1, 2)
@@ -144,9 +141,15 @@ def hidden_by_wires(
     return np.asarray(hidden)
 
 
+NO_WIRES = WireSightings(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0), 0.0)
+"""What is seen where no wires are looked for."""
+
+
 def bridged(rows: Floats) -> Floats:
     """Rows with straight lines across gaps; NaN beyond the first and the last known."""
     known = np.flatnonzero(np.isfinite(rows))
+    if known.size == 0:
+        return np.full(rows.size, np.nan)
     return np.interp(np.arange(rows.size), known, rows[known], left=np.nan, right=np.nan)
 
 

@@ -10,6 +10,9 @@ UNITS = (  # ending of a name, unit to show, factor from SI
     ("_m_per_s", "m/s", 1.0),
     ("_per_s", "1/s", 1.0),
     ("_hz", "Hz", 1.0),
+    ("_px", "px", 1.0),
+    ("_rad", "mrad", 1e3),
+    ("pixel_size_m", "µm", 1e6),
     ("_m", "mm", 1e3),
 )
 ROUNDING = 1e-15

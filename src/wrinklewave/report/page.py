@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 HEADLINE = (
+    "striker_velocity_m_per_s",
     "wavefront_speed_m_per_s",
     "wavefront_speed_origin_line_m_per_s",
     "wrinkle_speed_m_per_s",
@@ -30,6 +31,8 @@ HEADLINE = (
     "wavelength_m",
     "energy_imbalance_max",
     "hourglass_energy_share_max",
+    "contrast_to_noise",
+    "surface_sigma_px",
 )
 BALANCE_LINES = 11
 
@@ -46,7 +49,8 @@ class ReportContext:
         comparison: rows of the comparison with the paper.
         history: columns of the energy balance by name, each of shape [n].
         warnings: sentences.
-        case: the resolved case file.
+        case: the resolved case or experiment file.
+        kind: "simulation" or "measurement".
         versions: of the software, by name.
     """
 
@@ -60,6 +64,7 @@ class ReportContext:
     warnings: Sequence[str] = ()
     case: str = ""
     versions: Mapping[str, str] = field(default_factory=dict)
+    kind: str = "simulation"
 
 
 def write(path: str | Path, context: ReportContext) -> Path:
@@ -71,19 +76,22 @@ def write(path: str | Path, context: ReportContext) -> Path:
     return path
 
 
-def render(context: ReportContext) -> str:
-    """Return the report as HTML."""
+def render(context: ReportContext, template: str = "report.html", **others: Any) -> str:
+    """Return the report as HTML; ``others`` are what another template than the run's needs besides."""
     numbers = {name: value for name, value in context.summary.items() if _is_number(value)}
     return (
         environment()
-        .get_template("report.html")
+        .get_template(template)
         .render(
             context=context,
             headline=[shown(name, numbers[name]) for name in HEADLINE if numbers.get(name) is not None],
             results=[shown(name, value) for name, value in numbers.items()],
-            figures=[picture(name, FIGURES[name], file) for name, file in context.figures.items()],
+            figures=[
+                picture(name, FIGURES[name].of(context.kind), file) for name, file in context.figures.items()
+            ],
             **_comparison(context.comparison),
             balance=_balance(context.history),
+            **others,
         )
     )
 

@@ -79,22 +79,22 @@ def run_and_present(
     ``where`` are the threads and the device, as :func:`wrinklewave.simulate` takes them.
     """
     from wrinklewave.cli.console import console
-    from wrinklewave.cli.progress import simulation_progress
+    from wrinklewave.cli.progress import COMPILING, shown_progress
     from wrinklewave.experiments.bulk_choices import other_bulk_choices
-    from wrinklewave.experiments.simulate import Outcome
+    from wrinklewave.experiments.interruption import Outcome
     from wrinklewave.experiments.simulate import simulate as run_case
     from wrinklewave.report import comparison_table
     from wrinklewave.report.run import compare_with_paper, present
 
     out = console()
-    with simulation_progress(case.name) as progress:
+    with shown_progress(case.name, COMPILING) as progress:
         run = run_case(case, out=folder, **where, resume=resume, overwrite=overwrite, progress=progress)
     if run.outcome is not Outcome.FINISHED:
         out.print(f"{run.outcome.value}: wrinklewave restart {folder}")
         raise typer.Exit(130)
     summaries: dict[str, dict[str, Any]] = {case.substrate.bulk_response: run.summary}
     if all_bulk:
-        with simulation_progress(f"{case.name}, other bulk responses") as progress:
+        with shown_progress(f"{case.name}, other bulk responses", COMPILING) as progress:
             summaries = other_bulk_choices(
                 run, **where, resume=resume, progress=lambda choice, state: progress(state)
             )

@@ -1,0 +1,73 @@
+"""The folder of a measured impact: what lies where, and how it is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wrinklewave.errors import InputError
+from wrinklewave.experiments.boundary_history import boundary_columns
+from wrinklewave.experiments.frame_blocks import BlockStore
+from wrinklewave.experiments.run_folder import claim_folder, write_history, write_json, write_text
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from wrinklewave.config.experiment import Experiment
+
+
+@dataclass(frozen=True)
+class MeasurementFolder:
+    """Files of a measurement in ``path``."""
+
+    path: Path
+
+    @property
+    def frames(self) -> Path:
+        """Folder of the measured frames of a measurement that has not ended."""
+        return self.path / ".frames"
+
+    @property
+    def surface(self) -> Path:
+        """The surface motion."""
+        return self.path / "surface.nc"
+
+    @classmethod
+    def prepare(
+        cls, path: Path, experiment: Experiment, *, resume: bool, overwrite: bool
+    ) -> MeasurementFolder:
+        """Make the folder ready for a measurement, and put the resolved experiment there.
+
+        Raises:
+            InputError: if it holds a measurement already and neither ``resume`` nor ``overwrite`` says what to
+                do, or if it holds a run.
+        """
+        if (path / "case.toml").exists():
+            raise InputError("holds a run", file=path, cure="choose another folder with --out")
+        claim_folder(path, "experiment.toml", "a measurement", may_exist=resume or overwrite)
+        folder = cls(path)
+        if not resume:
+            folder._clear()
+        write_text(path / "experiment.toml", experiment.to_toml())
+        return folder
+
+    def blocks(self, origin: str) -> BlockStore:
+        """Where measured frames are kept; ``origin`` says what they are measured of."""
+        return BlockStore(self.frames, origin)
+
+    def write_summary(self, summary: dict[str, Any]) -> None:
+        """Scalar results."""
+        write_json(self.path / "summary.json", summary)
+
+    def write_finished(self, surface: xr.Dataset, summary: dict[str, Any]) -> None:
+        """What comes with the surface motion; then what only a restart needs goes."""
+        if surface["x_boundary"].notnull().sum() > 1:
+            write_history(self.path / "boundary.csv", boundary_columns(surface))
+        self.write_summary(summary)
+
+    def _clear(self) -> None:
+        (self.path / "summary.json").unlink(missing_ok=True)
+        self.surface.unlink(missing_ok=True)
+        for file in self.frames.glob("*"):
+            file.unlink()

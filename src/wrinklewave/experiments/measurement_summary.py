@@ -1,0 +1,154 @@
+"""What a measurement says about itself: attributes of its surface motion, scalar results, warnings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from wrinklewave._version import __version__
+from wrinklewave.environment import versions
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from wrinklewave.analysis.results import Analysis
+    from wrinklewave.config.experiment import Experiment
+    from wrinklewave.experiments.impact_moments import EndTrack, Impact
+    from wrinklewave.experiments.measured_surface import FrameSeries
+    from wrinklewave.imaging.appearance import Appearance
+    from wrinklewave.imaging.calibration import PixelMap
+    from wrinklewave.imaging.frames import FrameSource
+    from wrinklewave.imaging.tracks import WireTracks
+
+LOCKED = 0.02
+"""Pixels of pixel locking that are worth a warning."""
+FAINT = 5.0
+"""Contrast-to-noise ratio below which edges are lost."""
+NAMED_FRAMES = 5
+
+
+def surface_attributes(
+    experiment: Experiment, appearance: Appearance, pixels: PixelMap, impact: Impact
+) -> dict[str, Any]:
+    """Attributes of a measured surface motion; those that are not known are left out."""
+    sample = experiment.sample
+    distance = impact.stop_distance * pixels.pixel_size
+    attributes = {
+        "kind": "measurement",
+        "name": experiment.name,
+        "length": sample.length,
+        "height": sample.height,
+        "critical_strain": sample.critical_strain,
+        "critical_wavelength": sample.critical_wavelength,
+        "stop_distance": distance if np.isfinite(distance) else None,
+        "contact_on_recording_clock": impact.contact.time,
+        "pixel_size": pixels.pixel_size,
+        "origin_column": pixels.origin[0],
+        "origin_row": pixels.origin[1],
+        "tilt": pixels.tilt,
+        "blur_px": appearance.optics.blur,
+        "wrinklewave_version": __version__,
+        "experiment": experiment.to_toml(),
+    }
+    return {name: value for name, value in attributes.items() if value is not None}
+
+
+def measurement_summary(
+    source: FrameSource,
+    appearance: Appearance,
+    pixels: PixelMap,
+    series: FrameSeries,
+    track: EndTrack,
+    impact: Impact,
+    tracks: WireTracks | None,
+    surface: xr.Dataset,
+    analysis: Analysis,
+) -> tuple[dict[str, Any], list[str]]:
+    """Scalar results with units in their names, the analysis' own among them, and warnings."""
+    pixel = pixels.pixel_size
+    locking = series.locking.amplitude
+    values: dict[str, float] = {
+        "contact_on_recording_clock_s": impact.contact.time,
+        "contact_sigma_s": impact.contact.sigma,
+        "striker_stop_time_s": impact.stop.time - impact.contact.time,
+        "striker_stop_sigma_s": impact.stop.sigma,
+        "striker_separation_time_s": impact.separation.time - impact.contact.time,
+        "striker_separation_sigma_s": impact.separation.sigma,
+        "striker_stop_distance_m": impact.stop_distance * pixel,
+        "striker_velocity_m_per_s": _velocity(track, impact) * pixel,
+        "pixel_size_m": pixel,
+        "tilt_rad": pixels.tilt,
+        "blur_px": appearance.optics.blur,
+        "contrast_to_noise": float(np.median(series.contrast / series.noise)),
+        "surface_sigma_px": float(np.nanmedian(surface["u_y_sigma"].values)) / pixel,
+        "struck_end_sigma_px": _median(track.sigma),
+        "striker_sigma_px": _median(track.striker_sigma),
+        "wire_sigma_px": _median(tracks.sigma) if tracks else float("nan"),
+        "pixel_locking_px": locking,
+        "surface_seen_share": float(np.median(series.seen)),
+        "struck_end_seen_share": float(np.isfinite(track.column).mean()),
+    }
+    summary: dict[str, Any] = {
+        "name": surface.attrs["name"],
+        "outcome": "finished",
+        "message": "finished",
+        **analysis.summary,
+        **{name: float(value) if np.isfinite(value) else None for name, value in values.items()},
+        "frames": source.n_frames,
+        "frames_measured": int(series.frame.size),
+        "unreadable_frames": [list(pair) for pair in source.unreadable],
+        "wires": 0 if tracks is None else tracks.column.shape[1],
+        "wire_gaps": [] if tracks is None else [vars(gap) for gap in tracks.gaps],
+        "frames_analysed": surface.sizes["time"],
+        "versions": versions(),
+    }
+    return summary, list(source.notes) + _warnings(
+        source, locking, values["contrast_to_noise"], tracks, summary
+    )
+
+
+def _warnings(
+    source: FrameSource, locking: float, ratio: float, tracks: WireTracks | None, summary: dict[str, Any]
+) -> list[str]:
+    found = []
+    if source.unreadable:
+        named = "; ".join(f"{index}: {why}" for index, why in source.unreadable[:NAMED_FRAMES])
+        more = len(source.unreadable) - NAMED_FRAMES
+        found.append(
+            f"{len(source.unreadable)} of {source.n_frames} frames cannot be read and are left out "
+            f"({named}{f'; and {more} more' if more > 0 else ''})."
+        )
+    if locking > LOCKED:
+        found.append(
+            f"Pixel locking of {locking:.3f} px: the profile of the edge is not that of a blurred step "
+            "(too sharp for the pixels, compressed, or sharpened by the camera)."
+        )
+    if ratio < FAINT:
+        found.append(f"The contrast at the surface is only {ratio:.1f} times the noise.")
+    if tracks is not None:
+        lost = [gap for gap in tracks.gaps if not gap.bridged]
+        if lost:
+            named = ", ".join(
+                f"wire {gap.wire} in frames {gap.first} to {gap.stop - 1}" for gap in lost[:NAMED_FRAMES]
+            )
+            found.append(f"Wires are lost for longer than is bridged: {named}.")
+    if summary["frames_analysed"] < summary["frames_measured"]:
+        found.append(
+            f"Of {summary['frames_measured']} frames, {summary['frames_analysed']} from contact on are analysed; "
+            "surface.nc holds all."
+        )
+    return found
+
+
+def _velocity(track: EndTrack, impact: Impact) -> float:
+    """Speed of the striker in its last frames before contact [px/s]."""
+    known = np.flatnonzero(np.isfinite(track.striker) & (track.time < impact.contact.time))[-10:]
+    if known.size < 3:
+        return float("nan")
+    return float(np.polyfit(track.time[known], track.striker[known], 1)[0])
+
+
+def _median(values: Any) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if known.size else float("nan")
