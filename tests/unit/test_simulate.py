@@ -199,7 +199,7 @@ def test_damaged_checkpoint_is_refused(case, tmp_path, damage):
     else:
         with h5py.File(checkpoint, "a") as file:
             del file["state/memory"]
-    with pytest.raises(InputError, match="cannot be read|damaged"):
+    with pytest.raises(InputError, match=r"cannot be read|damaged"):
         simulate(case, out=tmp_path, resume=True)
 
 
