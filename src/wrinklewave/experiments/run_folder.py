@@ -64,6 +64,10 @@ class RunFolder:
         write_text(path / "case.toml", case.to_toml())
         return folder
 
+    def is_finished(self) -> bool:
+        """Whether the run has ended and everything is written; its report comes last."""
+        return (self.path / "report.html").exists() and not self.checkpoint.exists()
+
     def describe_checkpoint(self) -> str:
         """Where a run could go on from."""
         if self.checkpoint.exists():

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SHOWN_BANDWIDTHS = 4.0
+SHOWN_IN_KHZ = 2000.0
 
 
 @figure(
@@ -40,10 +41,11 @@ def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
     bandwidth = boundary.spectrum.bandwidth
     highest = min(SHOWN_BANDWIDTHS * bandwidth, boundary.spectrum.frequency[-1])
     shown = boundary.spectrum.frequency <= highest
-    spectrum.plot(
-        boundary.spectrum.frequency[shown], boundary.spectrum.magnitude[shown], color=BOUNDARY_COLOUR
-    )
-    spectrum.axvline(bandwidth, color="0.5", lw=0.8, ls="--", label=f"{bandwidth:.0f} Hz")
-    spectrum.set(xlabel="frequency (Hz)", ylabel="magnitude / maximum", ylim=(0.0, 1.05), xlim=(0.0, highest))
+    unit, scale = ("kHz", 1e-3) if highest >= SHOWN_IN_KHZ else ("Hz", 1.0)
+    frequency = scale * boundary.spectrum.frequency[shown]
+    spectrum.plot(frequency, boundary.spectrum.magnitude[shown], color=BOUNDARY_COLOUR)
+    spectrum.axvline(scale * bandwidth, color="0.5", lw=0.8, ls="--", label=f"{scale * bandwidth:.3g} {unit}")
+    spectrum.set(xlabel=f"frequency ({unit})", ylabel="magnitude / maximum")
+    spectrum.set(ylim=(0.0, 1.05), xlim=(0.0, scale * highest))
     spectrum.legend()
     return drawing

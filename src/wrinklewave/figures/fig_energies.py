@@ -57,7 +57,6 @@ def energy_balance(inputs: FigureInputs) -> Figure:
     energies.set(ylabel="energy (J/m)", xlim=(time[0], time[-1]))
     energies.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     largest = max(abs(history["external_work_J_per_m"]).max(), 1e-300)
-    imbalance.plot(time, 100.0 * history["imbalance_J_per_m"] / largest, color="black", lw=1.0)
-    imbalance.ticklabel_format(axis="y", style="plain", useOffset=False)
-    imbalance.set(xlabel="time (ms)", ylabel="imbalance (%)")
+    imbalance.plot(time, 1e6 * history["imbalance_J_per_m"] / largest, color="black", lw=1.0)
+    imbalance.set(xlabel="time (ms)", ylabel="imbalance (ppm)")
     return drawing

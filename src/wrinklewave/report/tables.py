@@ -49,12 +49,12 @@ def remarks(row: Row) -> str:
 
 
 def summary_table(summary: Mapping[str, float | None], names: Sequence[str]) -> Table:
-    """Chosen scalar results with handy units."""
+    """Chosen scalar results with handy units; what a run cannot tell is left out."""
     from rich.table import Table
 
     table = Table(show_header=False, box=None)
-    for name in names:
-        label, value, unit = shown(name, summary.get(name))
+    for name in (name for name in names if summary.get(name) is not None):
+        label, value, unit = shown(name, summary[name])
         table.add_row(label, f"{value} {unit}".strip())
     return table
 

@@ -15,15 +15,23 @@ RunDir = Annotated[Path, typer.Argument(metavar="DIR", help="Folder of the run."
 def restart(
     folder: RunDir, threads: Threads = None, device: Device = "cpu", all_bulk: AllBulk = False
 ) -> None:
-    """Go on with a run from its last checkpoint; the result is that of a run that was never stopped."""
+    """Go on with a run from its last checkpoint; the result is that of a run that was never stopped.
+
+    A run that was killed before its first checkpoint starts again; one that is finished is left alone.
+    """
+    from wrinklewave.cli.console import console
     from wrinklewave.cli.verbs.simulate import run_and_present
     from wrinklewave.config import load_case
     from wrinklewave.errors import InputError
+    from wrinklewave.experiments.run_folder import RunFolder
 
     case_file = folder / "case.toml"
     if not case_file.exists():
         raise InputError(
             "holds no run", file=folder, expected="the folder of an earlier run, with its case.toml"
         )
+    if not all_bulk and RunFolder(folder).is_finished():
+        console().print(f"finished already; look at {folder / 'report.html'}")
+        return
     where = {"threads": threads, "device": device}
     run_and_present(load_case(case_file), folder, where, resume=True, overwrite=False, all_bulk=all_bulk)

@@ -82,6 +82,7 @@ def run_and_present(
     from wrinklewave.cli.progress import COMPILING, shown_progress
     from wrinklewave.experiments.bulk_choices import other_bulk_choices
     from wrinklewave.experiments.interruption import Outcome
+    from wrinklewave.experiments.paper_statements import BULK_CHOICES
     from wrinklewave.experiments.simulate import simulate as run_case
     from wrinklewave.report import comparison_table
     from wrinklewave.report.run import compare_with_paper, present
@@ -90,8 +91,7 @@ def run_and_present(
     with shown_progress(case.name, COMPILING) as progress:
         run = run_case(case, out=folder, **where, resume=resume, overwrite=overwrite, progress=progress)
     if run.outcome is not Outcome.FINISHED:
-        out.print(f"{run.outcome.value}: wrinklewave restart {folder}")
-        raise typer.Exit(130)
+        raise _interrupted(f"at {1e3 * run.summary['simulated_time_s']:g} ms", folder)
     summaries: dict[str, dict[str, Any]] = {case.substrate.bulk_response: run.summary}
     if all_bulk:
         with shown_progress(f"{case.name}, other bulk responses", COMPILING) as progress:
@@ -103,6 +103,18 @@ def run_and_present(
     if all_bulk:
         out.print(comparison_table(rows))
     _describe(run)
+    missing = [choice for choice in BULK_CHOICES if all_bulk and choice not in summaries]
+    if missing:
+        raise _interrupted(f"before {' and '.join(missing)}", folder, "--all-bulk")
+
+
+def _interrupted(where: str, folder: Path, *options: str) -> typer.Exit:
+    from wrinklewave.cli.console import console
+
+    console().print(
+        f"interrupted {where}; go on with:  {' '.join(('wrinklewave restart', str(folder), *options))}"
+    )
+    return typer.Exit(130)
 
 
 def _describe(run: Run) -> None:
