@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import signal
+import time
 from pathlib import Path
 
 import h5py
@@ -12,7 +13,10 @@ import pytest
 
 from wrinklewave import surface
 from wrinklewave.config import load_case
+from wrinklewave.dynamics import cpu
 from wrinklewave.dynamics.fields import FIELDS
+from wrinklewave.dynamics.model import build_model
+from wrinklewave.dynamics.simulation import Simulation
 from wrinklewave.errors import InputError, RunError
 from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.simulate import output_times, simulate
@@ -220,6 +224,24 @@ def test_time_left_comes_from_the_pace_of_the_steps(case):
     simulate(case, progress=lambda state: found.append((state.time, state.seconds_left)))
     assert np.isnan([left for _, left in found[:2]]).all()  # at rest, and after the first steps
     assert found[-1] == (pytest.approx(0.5e-3), 0.0)
+
+
+def test_the_compiler_does_not_count_as_stepping(case, monkeypatch):
+    advance, compiled = cpu.advance, []
+
+    def slow_at_first(*arguments):
+        if not compiled:
+            time.sleep(0.3)  # stands for the compiler
+            compiled.append(True)
+        advance(*arguments)
+
+    monkeypatch.setattr(cpu, "advance", slow_at_first)
+    simulation = Simulation(build_model(case), np.array([0.0, 1e-5]))
+    for _ in simulation.run():
+        pass
+    assert compiled
+    assert simulation.step > 0
+    assert simulation.stepping_seconds < 0.3
 
 
 def test_too_many_threads_is_an_error(case):

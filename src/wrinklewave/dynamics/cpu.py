@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.dynamics.backends import Sample
+from wrinklewave.dynamics.boundary import N_TOTALS
 from wrinklewave.dynamics.energy import N_COLUMNS, kinetic_energy, survey_share
 from wrinklewave.dynamics.fields import FIELDS, fields_share
 from wrinklewave.dynamics.stable_step import stable_steps_share
@@ -67,12 +68,14 @@ class Cpu:
         self._work = np.zeros((parts, N_COLUMNS, columns))
         alone = model.arrays._replace(shares=np.array([0, rows]))
         self._pace = Pace([model.arrays, alone] if parts > 1 else [model.arrays])
+        self._compiled = False
 
     def march(
         self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
     ) -> Iterator[Sample]:
         """Step, and survey the state after every group of steps."""
         m, a = self._model, self._model.arrays
+        self._compile()
         for first in range(0, n, group):
             count = min(group, n - first)
             last = dt_last if first == 0 else dt
@@ -84,6 +87,13 @@ class Cpu:
             share_out(survey_share, self._parts, dt, a, self._memory, m.terms, self._work, self._survey)
             kinetic = kinetic_energy(a.inverse_mass, a.vx, a.vy)
             yield Sample(count, seconds, self._survey, kinetic, (a.u[-1, 0], a.w[-1, 0]))
+
+    def _compile(self) -> None:
+        """Take no step once, so that the time of the first steps is not that of the compiler."""
+        if not self._compiled:
+            m = self._model
+            advance(0, 0.0, 0.0, 1.0, m.arrays, self._memory, m.terms, m.boundary, np.zeros(N_TOTALS))
+            self._compiled = True
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
