@@ -45,6 +45,16 @@ def test_history_starts_at_contact_and_counts_from_rest(X: tuple[float, ...]) ->
     np.testing.assert_allclose(found["u_y_m"], (1.0 + 0.2) * t, atol=1e-9)
 
 
+def test_history_starts_at_a_contact_between_frames() -> None:
+    time = (np.arange(-5, 50) + 0.3) * 20e-6
+    surface = tilted(time, (4e-3,))
+    surface["u_y"][2:9] = np.nan  # the corner is out of sight around contact
+    found = boundary_columns(surface)
+    assert [found[name][0] for name in ("time_s", "u_x_m", "u_y_m")] == [0.0, 0.0, 0.0]
+    np.testing.assert_allclose(found["u_x_m"], 2.0 * found["time_s"], atol=1e-12)
+    np.testing.assert_allclose(found["u_y_m"], 1.2 * found["time_s"], atol=1e-9)
+
+
 def test_an_end_out_of_sight_drives_nothing() -> None:
     surface = tilted(np.arange(10) * 20e-6, (0.0,))
     surface["x_boundary"][:] = np.nan

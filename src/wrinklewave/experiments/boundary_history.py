@@ -18,7 +18,7 @@ FEWEST_HEIGHTS = 4
 
 
 def boundary_columns(surface: xr.Dataset) -> dict[str, Array]:
-    """Displacement of the struck end and of its top corner, from time 0 (contact) on.
+    """Displacement of the struck end and of its top corner, from time 0 (contact, until when it rests) on.
 
     Displacements count from the mean place before contact, or from the first one where the motion starts at
     contact. The corner is the material point X = 0 where the surface motion follows it; otherwise the height
@@ -42,7 +42,11 @@ def boundary_columns(surface: xr.Dataset) -> dict[str, Array]:
             key="x_boundary",
             expected="two at least",
         )
-    during = slice(seen[0], seen[-1] + 1)
+    last = time[seen[-1]]
+    contact = int(np.searchsorted(time, 0.0))
+    if time[contact] > 0.0:  # contact lies between two frames: the end is at rest until then
+        time, u_x, u_y = (np.insert(values, contact, 0.0) for values in (time, u_x, u_y))
+    during = (time >= 0.0) & (time <= last)
     columns = {"time_s": time, "u_x_m": _bridged(time, u_x), "u_y_m": _bridged(time, u_y)}
     return {name: column[during] for name, column in columns.items()}
 
