@@ -18,6 +18,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock
 
 import numpy as np
 from numba import cuda
@@ -39,10 +40,10 @@ FEW, MANY = 0, 1000
 class _Array(np.ndarray):
     """A host's array with the methods of a device's."""
 
-    def copy_to_host(self, out: np.ndarray | None = None) -> np.ndarray:
+    def copy_to_host(self, out: np.ndarray | None = None, stream: Any = None) -> np.ndarray:
         return np.asarray(self)
 
-    def copy_to_device(self, values: np.ndarray) -> None:
+    def copy_to_device(self, values: np.ndarray, stream: Any = None) -> None:
         self[...] = values
 
 
@@ -90,17 +91,21 @@ def compiled(model: Model) -> dict[str, str]:
         backend.cuda = SimpleNamespace(  # type: ignore[assignment]
             to_device=lambda values: np.array(values).view(_Array),
             device_array=_device_array,
+            pinned_array=np.zeros,
+            stream=MagicMock,
+            event=MagicMock,
+            current_context=lambda: None,
             get_current_device=lambda device=device: device,
         )
         dispatcher.get_current_device = lambda device=device: device
         stepped = backend.Cuda(model)
         list(stepped.march(3, 2, 0.0, 0.0, 1e-6, np.zeros(N_TOTALS)))
         stepped.stable_steps()
-        stepped.fields()
+        stepped.snapshot()()
     return found
 
 
-_KERNELS = {name: getattr(kernels, name) for name in ("steps", "sample", "march", "fields", "stable_steps")}
+_KERNELS = {name: getattr(kernels, name) for name in ("steps", "sample", "march", "snapshot", "stable_steps")}
 
 
 def resources(ptx: str) -> dict[str, int]:

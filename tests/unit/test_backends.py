@@ -86,7 +86,7 @@ def test_kernels_compile_for_a_gpu(tmp_path):
     file = tmp_path / "kernels.json"
     subprocess.run([sys.executable, "-m", "support.cuda_targets", str(file)], env=environment(), check=True)
     found = json.loads(file.read_text())
-    kernels = {"steps", "sample", "march", "fields", "stable_steps"}
+    kernels = {"steps", "sample", "march", "snapshot", "stable_steps"}
     assert {name: set(of_model) for name, of_model in found.items()} == {
         "struck": kernels,
         "many_terms": kernels,

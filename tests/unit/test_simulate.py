@@ -122,7 +122,7 @@ def test_replacing_a_run_leaves_nothing_of_the_old_one(case, tmp_path):
 
     simulate(case, out=tmp_path, overwrite=True, progress=interrupt)
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"case.toml", "checkpoint.h5", ".frames", "history.csv", "summary.json"}
+    assert names == {"case.toml", "checkpoint.h5", "fields.vtkhdf.part", "history.csv", "summary.json"}
 
 
 def test_outputs_far_apart_do_not_make_the_step_too_long(case):

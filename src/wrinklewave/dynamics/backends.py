@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -35,6 +35,19 @@ class Sample:
     corner: tuple[float, float]
 
 
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """Fields at one time.
+
+    Args:
+        nodal: displacements u, w [m] and velocities [m/s], shape [4, n_rows + 1, n_columns + 1].
+        elements: shape [len(FIELDS), n_rows, n_columns], see :mod:`wrinklewave.dynamics.fields`.
+    """
+
+    nodal: NDArray
+    elements: NDArray
+
+
 class Backend(Protocol):
     """Steps a model that is at rest or comes from a checkpoint, whose state it takes when it is first used."""
 
@@ -47,14 +60,14 @@ class Backend(Protocol):
         impulses at the boundary, brought up to date before every sample.
         """
 
+    def least_stable_step(self) -> float:
+        """The smallest of :meth:`stable_steps` [s], NaN if any is."""
+
     def stable_steps(self) -> NDArray:
         """Largest stable step of each element [s], shape [n_rows, n_columns]."""
 
-    def fields(self) -> NDArray:
-        """Element fields, shape [len(FIELDS), n_rows, n_columns], see :mod:`wrinklewave.dynamics.fields`."""
-
-    def fetch_nodes(self) -> None:
-        """Bring displacements and velocities to ``model.arrays``."""
+    def snapshot(self) -> Callable[[], Snapshot]:
+        """Set the present state aside. The result makes the fields of it, once, on any thread and later if need be."""
 
     def fetch_all(self) -> None:
         """Bring all that a checkpoint keeps to ``model.arrays`` and ``model.memory``."""

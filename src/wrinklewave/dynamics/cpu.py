@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.dynamics.backends import Sample
+from wrinklewave.dynamics.backends import Sample, Snapshot
 from wrinklewave.dynamics.boundary import N_TOTALS
 from wrinklewave.dynamics.energy import N_COLUMNS, kinetic_energy, survey_share
 from wrinklewave.dynamics.fields import FIELDS, fields_share
@@ -16,7 +16,7 @@ from wrinklewave.dynamics.step import advance
 from wrinklewave.dynamics.team import share_out
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -95,19 +95,30 @@ class Cpu:
             advance(0, 0.0, 0.0, 1.0, m.arrays, self._memory, m.terms, m.boundary, np.zeros(N_TOTALS))
             self._compiled = True
 
+    def least_stable_step(self) -> float:
+        """The smallest of them [s]."""
+        return float(self.stable_steps().min())
+
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
         share_out(stable_steps_share, self._parts, self._model.arrays, self._model.density, self._steps)
         return self._steps
 
-    def fields(self) -> NDArray[np.float64]:
-        """Element fields."""
-        m, out = self._model, np.zeros((len(FIELDS), *self._model.mesh.shape))
-        share_out(fields_share, self._parts, m.arrays, self._memory, m.terms, out)
-        return out
+    def snapshot(self) -> Callable[[], Snapshot]:
+        """Copy the state; its fields can be computed while the next steps are taken."""
+        a = self._model.arrays
+        nodal = np.stack([a.u, a.w, a.vx, a.vy])
+        memory, factors = self._model.memory.copy(), a.factors.copy()
 
-    def fetch_nodes(self) -> None:
-        """Nothing to do: the state is where it should be."""
+        def fields() -> Snapshot:
+            u, w, vx, vy = nodal
+            then = a._replace(u=u, w=w, vx=vx, vy=vy, factors=factors)
+            out = np.empty((len(FIELDS), *self._model.mesh.shape))
+            for part in range(self._parts):
+                fields_share(part, then, tuple(memory), self._model.terms, out)
+            return Snapshot(nodal, out)
+
+        return fields
 
     def fetch_all(self) -> None:
         """Nothing to do: the state is where it should be."""

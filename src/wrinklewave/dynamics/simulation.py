@@ -73,8 +73,7 @@ class Simulation:
     """A model that runs through ``events`` (increasing times [s], the first one 0) on a ``device``.
 
     Everything that a restart needs is in ``model.arrays``, ``model.memory`` and the fields below; while the model is
-    on a GPU, displacements and velocities are brought to ``model.arrays`` at every event, the rest by
-    ``backend.fetch_all``.
+    on a GPU, ``backend.fetch_all`` brings the state to where it belongs.
     """
 
     model: Model
@@ -131,13 +130,12 @@ class Simulation:
         while self.next_event < self.events.size:
             if self.next_event > 0:
                 self._go(self.events[self.next_event - 1], self.events[self.next_event])
-                self.backend.fetch_nodes()
             self.next_event += 1
             yield Event(self.next_event - 1, self.time)
 
     def fields(self) -> NDArray[np.float64]:
         """Element fields now, shape [len(FIELDS), n_rows, n_columns], see :mod:`wrinklewave.dynamics.fields`."""
-        return self.backend.fields()
+        return self.backend.snapshot()().elements
 
     def stable_step(self) -> float:
         """Largest stable step of the present state [s].
@@ -145,12 +143,10 @@ class Simulation:
         Raises:
             RunError: as :meth:`run`.
         """
-        steps = self.backend.stable_steps()
-        row, column = np.unravel_index(int(np.argmin(steps)), steps.shape)  # the first NaN, if any
-        dt = float(steps[row, column])
+        dt = self.backend.least_stable_step()
         self.first_dt = self.first_dt or dt
         if not dt > SMALLEST_STEP * self.first_dt:
-            raise self._failure(int(row), int(column), dt)
+            raise self._failure()
         return dt
 
     def _go(self, start: float, stop: float) -> None:
@@ -224,7 +220,10 @@ class Simulation:
                 "  to mend:  a finer mesh there, a longer rise time, or more bulk viscosity"
             )
 
-    def _failure(self, row: int, column: int, dt: float) -> RunError:
+    def _failure(self) -> RunError:
+        steps = self.backend.stable_steps()
+        row, column = np.unravel_index(int(np.argmin(steps)), steps.shape)  # the first NaN, if any
+        dt = float(steps[row, column])
         X, Y = self.model.arrays.X, self.model.arrays.Y
         place = f"X = {X[row, column] * 1e3:.3f} mm, Y = {Y[row, column] * 1e3:.3f} mm"
         t = max(self.time, self.reached)

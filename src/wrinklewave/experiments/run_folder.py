@@ -13,7 +13,6 @@ from wrinklewave import surface
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.boundary_history import boundary_columns
 from wrinklewave.experiments.probes import probe_columns
-from wrinklewave.experiments.vtkhdf import write_vtkhdf
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,9 +45,9 @@ class RunFolder:
         return self.path / "checkpoint.h5"
 
     @property
-    def frames(self) -> Path:
-        """Folder of the field frames of a run that has not ended."""
-        return self.path / ".frames"
+    def fields(self) -> Path:
+        """Fields of a run that has not ended."""
+        return self.path / "fields.vtkhdf.part"
 
     @classmethod
     def prepare(cls, path: Path, case: Case, *, resume: bool, overwrite: bool) -> RunFolder:
@@ -74,6 +73,17 @@ class RunFolder:
             return f"last checkpoint: {self.checkpoint}"
         return "no checkpoint had been written yet (solver.checkpoint_interval)"
 
+    def require_fields(self) -> None:
+        """See that the fields before the checkpoint are there.
+
+        Raises:
+            InputError: if they are not.
+        """
+        if not self.fields.exists():
+            raise InputError(
+                "is missing beside its checkpoint", file=self.fields, cure="start again without --resume"
+            )
+
     def write_unfinished(self, run: Run) -> None:
         """History and summary of a run that was interrupted or failed."""
         write_history(self.path / "history.csv", run.history)
@@ -86,16 +96,16 @@ class RunFolder:
         write_history(self.path / "boundary.csv", boundary_columns(run.surface))
         if run.case.output.probes:
             write_history(self.path / "probes.csv", probe_columns(run.surface, run.case.output.probes))
-        write_vtkhdf(self.path / "fields.vtkhdf", run.mesh, run.fields)
+        assert run.fields.file is not None  # a run with a folder writes to it
+        run.fields.file.rename(self.path / "fields.vtkhdf")
         self.write_unfinished(run)
         self.checkpoint.unlink(missing_ok=True)
-        run.fields.remove()
 
     def _clear(self) -> None:
         """Remove what an earlier run has left, so that nothing of it stands beside the new case."""
-        for name in (self.checkpoint.name, *RESULTS):
+        for name in (self.checkpoint.name, self.fields.name, *RESULTS):
             (self.path / name).unlink(missing_ok=True)
-        for file in (*self.frames.glob("*"), *(self.path / "figures").glob("*.png")):
+        for file in (self.path / "figures").glob("*.png"):
             file.unlink()
 
 

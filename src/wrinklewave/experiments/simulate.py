@@ -19,10 +19,11 @@ from wrinklewave.dynamics.simulation import HISTORY, Simulation
 from wrinklewave.environment import choose_device, processor, versions
 from wrinklewave.errors import InputError, RunError
 from wrinklewave.experiments.interruption import Outcome, interruptible
-from wrinklewave.experiments.recording import FieldStore, SurfaceRecorder
+from wrinklewave.experiments.recording import FieldStore, Recording, SurfaceRecorder
 from wrinklewave.experiments.run_folder import RunFolder
 from wrinklewave.experiments.run_summary import energy_scalars, material_scalars
 from wrinklewave.experiments.simulated_surface import laboratory_grid, simulated_surface
+from wrinklewave.experiments.vtkhdf import FieldFile
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
     from wrinklewave.analysis.results import Analysis
     from wrinklewave.dynamics.backends import Device
-    from wrinklewave.experiments.recording import FieldFrame
+    from wrinklewave.experiments.vtkhdf import FieldFrame
     from wrinklewave.mesh.block import GridMesh
 
 
@@ -136,12 +137,13 @@ def simulate(
     threads, chosen = _use_threads(threads), choose_device(device)
     folder = RunFolder.prepare(Path(out), case, resume=resume, overwrite=overwrite) if out else None
     place = folder.path if folder else None
-    simulation, recorder, store = _start(case, threads, chosen, folder, resume)
+    simulation, recording = _start(case, threads, chosen, folder, resume)
+    mesh, store = simulation.model.mesh, recording.fields
     begin = time.perf_counter()
     try:
-        outcome = _run(case, simulation, recorder, store, folder, progress)
+        outcome = _run(case, simulation, recording, folder, progress)
     except RunError as error:
-        run = Run(case, Outcome.FAILED, _history(simulation), store, simulation.model.mesh, folder=place)
+        run = Run(case, Outcome.FAILED, _history(simulation), store, mesh, folder=place)
         run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin) | {
             "message": str(error)
         }
@@ -149,9 +151,9 @@ def simulate(
             folder.write_unfinished(run)
             raise RunError(f"{error}\n  {folder.describe_checkpoint()}") from error
         raise
-    run = Run(case, outcome, _history(simulation), store, simulation.model.mesh, folder=place)
+    run = Run(case, outcome, _history(simulation), store, mesh, folder=place)
     if outcome is Outcome.FINISHED:
-        run.surface = simulated_surface(case, simulation.model.mesh.X[-1], recorder.to_record())
+        run.surface = simulated_surface(case, mesh.X[-1], recording.surface.to_record())
         run.analysis = analyse(run.surface, case.analysis)
         run.snapshots = store.nearest(case.analysis.times)
     run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin)
@@ -184,54 +186,46 @@ def output_times(interval: float, end: float) -> NDArray[np.float64]:
 
 def _start(
     case: Case, threads: int, device: Device, folder: RunFolder | None, resume: bool
-) -> tuple[Simulation, SurfaceRecorder, FieldStore]:
+) -> tuple[Simulation, Recording]:
     end = case.solver.end_time
-    surface, fields = (
-        output_times(case.output.surface_interval, end),
-        output_times(case.output.field_interval, end),
+    surface_times, field_times = (
+        np.round(output_times(interval, end), 12)
+        for interval in (case.output.surface_interval, case.output.field_interval)
     )
-    events = np.unique(np.round(np.concatenate([surface, fields]), 12))
     simulation = Simulation(
         build_model(case, threads=threads),
-        events,
+        np.unique(np.concatenate([surface_times, field_times])),
         safety=case.solver.safety,
         history_interval=case.output.history_interval,
         device=device,
     )
-    recorder = SurfaceRecorder(case.wrinkles.averaging_depth)
-    store = FieldStore(folder.frames if folder else None)
+    mesh = simulation.model.mesh
+    surface = SurfaceRecorder(mesh, case.wrinkles.averaging_depth)
     if folder and resume and folder.checkpoint.exists():
-        recorder.restore(read_checkpoint(folder.checkpoint, simulation, case.to_toml()))
-        done = int(np.isin(simulation.events[: simulation.next_event], np.round(fields, 12)).sum())
-        store.forget_from(done)
-    return simulation, recorder, store
+        surface.restore(read_checkpoint(folder.checkpoint, simulation, case.to_toml()))
+        folder.require_fields()
+    file = FieldFile(folder.fields, mesh, field_times) if folder else None
+    return simulation, Recording(frozenset(surface_times), surface, FieldStore(field_times, file))
 
 
 def _run(
     case: Case,
     simulation: Simulation,
-    recorder: SurfaceRecorder,
-    store: FieldStore,
+    recording: Recording,
     folder: RunFolder | None,
     progress: Callable[[Progress], None],
 ) -> Outcome:
-    end = case.solver.end_time
-    surface_times = set(np.round(output_times(case.output.surface_interval, end), 12))
-    field_times = np.round(output_times(case.output.field_interval, end), 12)
     begin = saved = time.perf_counter()
     clock = Clock(simulation)
-    with interruptible() as wished:
+    with interruptible() as wished, recording:
         for event in simulation.run():
-            fields = simulation.fields()
-            if event.time in surface_times:
-                recorder.record(simulation, fields)
-            if event.time in field_times:
-                store.add(int(np.searchsorted(field_times, event.time)), simulation, fields)
+            recording.take(event.time, simulation)
             now = time.perf_counter()
             progress(_progress(simulation, now - begin, clock.seconds_left()))
             due = now - saved > case.solver.checkpoint_interval or wished()
             if folder and due:
-                write_checkpoint(folder.checkpoint, simulation, recorder.to_record(), case.to_toml())
+                recording.flush()
+                write_checkpoint(folder.checkpoint, simulation, recording.surface.to_record(), case.to_toml())
                 saved = now
             if wished():
                 return Outcome.INTERRUPTED

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numba import config, cuda
 
-from wrinklewave.dynamics.backends import Sample
+from wrinklewave.dynamics.backends import Sample, Snapshot
 from wrinklewave.dynamics.boundary import FORCE, N_TOTALS, Boundary, n_edge_nodes
 from wrinklewave.dynamics.cuda import kernels
 from wrinklewave.dynamics.energy import N_COLUMNS
@@ -19,7 +19,7 @@ from wrinklewave.dynamics.step import Arrays, update_factors
 from wrinklewave.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from numpy.typing import NDArray
 
@@ -62,6 +62,30 @@ class _Samples(NamedTuple):
     corner: Any
 
 
+class _Buffers(NamedTuple):
+    """Of a march: what the edges gather on the device, the same on the host before it starts, and the samples."""
+
+    gathered: Any
+    nothing: NDArray[np.float64]
+    samples: _Samples
+
+
+@dataclass(frozen=True, eq=False)
+class _Slot:
+    """Room for a snapshot, on the device and in memory of the host that the device can write to."""
+
+    nodal: Any
+    elements: Any
+    nodal_copy: NDArray[np.float64]
+    elements_copy: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, model: Model) -> _Slot:
+        nodal, elements = (4, *model.mesh.X.shape), (len(FIELDS), *model.mesh.shape)
+        on_device = (cuda.device_array(shape) for shape in (nodal, elements))
+        return cls(*on_device, *(cuda.pinned_array(shape) for shape in (nodal, elements)))
+
+
 class Cuda:
     """A :class:`~wrinklewave.dynamics.backends.Backend` on the current CUDA device, in double precision.
 
@@ -80,6 +104,7 @@ class Cuda:
         self._threads = SIMULATED_THREADS if config.ENABLE_CUDASIM else kernels.BLOCK
         self._shared = 8 * self._threads  # bytes: one number for each
         self._blocks = -(-model.mesh.X.size // self._threads)
+        self._slots: list[_Slot] = []  # that no snapshot holds
 
     def march(
         self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
@@ -96,30 +121,50 @@ class Cuda:
             self._on_device.arrays.factors.copy_to_device(factors)  # type: ignore[attr-defined]  # on the device it is a device array
             yield from self._march(count, group, times, totals)
 
+    def least_stable_step(self) -> float:
+        """The smallest of them [s]."""
+        return float(self._estimate_steps()[1].copy_to_host(stream=self._stream).min())
+
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
-        d = self._on_device
-        out = cuda.device_array(self._model.mesh.shape)
-        kernels.stable_steps[self._blocks, self._threads](d.arrays, d.layer, d.density, out)
-        return out.copy_to_host()
+        return self._estimate_steps()[0].copy_to_host(stream=self._stream)
 
-    def fields(self) -> NDArray[np.float64]:
-        """Element fields."""
-        d = self._on_device
-        out = cuda.device_array((len(FIELDS), *self._model.mesh.shape))
-        kernels.fields[self._blocks, self._threads](d.arrays, d.layer, d.memory, self._model.terms, out)
-        return out.copy_to_host()
+    def _estimate_steps(self) -> tuple[Any, Any]:
+        """Stable steps, and the smallest of each row, on the device."""
+        d, (of_elements, of_rows) = self._on_device, self._steps
+        launch = kernels.stable_steps[self._model.mesh.shape[0], self._threads, self._stream, self._shared]
+        launch(d.arrays, d.layer, d.density, of_elements, of_rows)
+        return self._steps
 
-    def fetch_nodes(self) -> None:
-        """Copy displacements and velocities to ``model.arrays``."""
-        for name in ("u", "w", "vx", "vy"):
-            getattr(self._on_device.arrays, name).copy_to_host(getattr(self._model.arrays, name))
+    def snapshot(self) -> Callable[[], Snapshot]:
+        """Compute the fields on the device; they are copied from it while the next steps are taken."""
+        d, slot = self._on_device, self._slots.pop() if self._slots else _Slot.of(self._model)
+        launch = kernels.snapshot[self._blocks, self._threads, self._stream]
+        launch(d.arrays, d.layer, d.memory, self._model.terms, slot.nodal, slot.elements)
+        ready, copied = cuda.event(), cuda.event()
+        ready.record(self._stream)
+        ready.wait(self._copies)
+        slot.nodal.copy_to_host(slot.nodal_copy, stream=self._copies)
+        slot.elements.copy_to_host(slot.elements_copy, stream=self._copies)
+        copied.record(self._copies)
+
+        def wait() -> Snapshot:
+            cuda.current_context()  # the device becomes that of the thread that waits
+            copied.synchronize()
+            found = Snapshot(slot.nodal_copy.copy(), slot.elements_copy.copy())
+            self._slots.append(slot)
+            return found
+
+        return wait
 
     def fetch_all(self) -> None:
-        """Copy the memory as well."""
-        self.fetch_nodes()
-        for k, component in enumerate(self._on_device.memory):
-            component.copy_to_host(self._model.memory[k])
+        """Copy displacements, velocities and memory to the model."""
+        d, model = self._on_device, self._model
+        for name in ("u", "w", "vx", "vy"):
+            getattr(d.arrays, name).copy_to_host(getattr(model.arrays, name), stream=self._stream)
+        for component, kept in zip(d.memory, model.memory, strict=True):
+            component.copy_to_host(kept, stream=self._stream)
+        self._stream.synchronize()
 
     @cached_property
     def _on_device(self) -> _Resident:
@@ -135,6 +180,32 @@ class Cuda:
             density=cuda.to_device(model.density),
         )
 
+    @cached_property
+    def _stream(self) -> Any:
+        """Of the steps, and of what is copied between them."""
+        return cuda.stream()
+
+    @cached_property
+    def _copies(self) -> Any:
+        """Of what is copied while steps are taken."""
+        return cuda.stream()
+
+    @cached_property
+    def _steps(self) -> tuple[Any, Any]:
+        rows, columns = self._model.mesh.shape
+        return cuda.device_array((rows, columns)), cuda.device_array(rows)
+
+    @cached_property
+    def _buffers(self) -> _Buffers:
+        rows, columns = self._model.mesh.X.shape
+        nothing = np.zeros((n_edge_nodes(rows, columns), N_TOTALS))
+        samples = _Samples(
+            cuda.to_device(np.zeros((SAMPLES_PER_LAUNCH, rows, kernels.N_SUMS))),
+            cuda.device_array((SAMPLES_PER_LAUNCH, *nothing.shape)),
+            cuda.device_array((SAMPLES_PER_LAUNCH, 2)),
+        )
+        return _Buffers(cuda.to_device(nothing), nothing, samples)
+
     @property
     def _fits(self) -> bool:
         """Whether every node can have a thread at once: a multiprocessor always holds one block."""
@@ -143,18 +214,14 @@ class Cuda:
         return self._blocks <= cuda.get_current_device().MULTIPROCESSOR_COUNT
 
     def _march(self, n: int, group: int, times: _Times, totals: NDArray[np.float64]) -> Iterator[Sample]:
-        count, (rows, columns) = -(-n // group), self._model.mesh.X.shape
-        edge_nodes = n_edge_nodes(rows, columns)
-        gathered = cuda.to_device(np.zeros((edge_nodes, N_TOTALS)))
-        samples = _Samples(
-            cuda.to_device(np.zeros((count, rows, kernels.N_SUMS))),
-            cuda.device_array((count, edge_nodes, N_TOTALS)),
-            cuda.device_array((count, 2)),
-        )
+        count, b = -(-n // group), self._buffers
+        samples = _Samples(*(sample[:count] for sample in b.samples))
         begin = time.perf_counter()
+        b.gathered.copy_to_device(b.nothing, stream=self._stream)
         launch = self._in_one_launch if self._fits else self._in_groups
-        launch(n, group, times, gathered, samples)
-        sums, edges, corner = (sample.copy_to_host() for sample in samples)
+        launch(n, group, times, b.gathered, samples)
+        sums, edges, corner = (sample.copy_to_host(stream=self._stream) for sample in samples)
+        self._stream.synchronize()
         seconds = time.perf_counter() - begin
         before = totals.copy()
         before[FORCE] = 0.0
@@ -172,7 +239,7 @@ class Cuda:
         d = self._on_device
         state = (d.arrays, d.layer, d.memory, self._model.terms, d.boundary, gathered)
         blocks = 1 if config.ENABLE_CUDASIM else self._blocks
-        kernels.march[blocks, self._threads, 0, self._shared](n, group, *times, *state, *samples)
+        kernels.march[blocks, self._threads, self._stream, self._shared](n, group, *times, *state, *samples)
 
     def _in_groups(self, n: int, group: int, times: _Times, gathered: Any, samples: _Samples) -> None:
         d = self._on_device
@@ -183,9 +250,9 @@ class Cuda:
                 times = _Times(times.t + group * times.dt, times.dt, times.dt, d.arrays.factors)
             arguments = (min(group, n - first), *times, *state, d.boundary, gathered)
             blocks = blocks or self._cooperating_blocks(kernels.steps, arguments)
-            kernels.steps[blocks, self._threads](*arguments)
+            kernels.steps[blocks, self._threads, self._stream](*arguments)
             then = (samples.sums[k], samples.totals[k], samples.corner[k])
-            kernels.sample[rows, self._threads, 0, self._shared](times.dt, *state, gathered, *then)
+            kernels.sample[rows, self._threads, self._stream, self._shared](times.dt, *state, gathered, *then)
 
     def _cooperating_blocks(self, kernel: Any, arguments: tuple[Any, ...]) -> int:
         """As many blocks as are useful and can be on the device together, so that they may wait for each other."""

@@ -244,20 +244,30 @@ def march(
 
 
 @_kernel()
-def fields(a, layer, memory, terms, out):
-    """Element fields of the present state, ``out`` [len(FIELDS), n_rows, n_columns]."""
+def snapshot(a, layer, memory, terms, nodal, elements):
+    """The present state: ``nodal`` [4, ...] u, w, vx, vy, and the fields, ``elements`` [len(FIELDS), ...]."""
     rows, columns = layer.shape
     for e in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
         j = e // columns
         i = e - j * columns
-        fields_run(j, i, i + 1, layer[j, i], a, memory, terms, out)
+        fields_run(j, i, i + 1, layer[j, i], a, memory, terms, elements)
+    rows, columns = a.u.shape
+    for p in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
+        j = p // columns
+        i = p - j * columns
+        nodal[0, j, i], nodal[1, j, i] = a.u[j, i], a.w[j, i]
+        nodal[2, j, i], nodal[3, j, i] = a.vx[j, i], a.vy[j, i]
 
 
 @_kernel()
-def stable_steps(a, layer, density, out):
-    """Largest stable step of each element [s], ``out`` [n_rows, n_columns]."""
+def stable_steps(a, layer, density, out, least):
+    """Largest stable step of each element [s], ``out`` [n_rows, n_columns], and the ``least`` of each row [n_rows]."""
+    shared = cuda.shared.array(0, float64)  # as much as the launch asks for
+    thread, threads = cuda.threadIdx.x, cuda.blockDim.x
     rows, columns = layer.shape
-    for e in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
-        j = e // columns
-        i = e - j * columns
-        stable_step_run(j, i, i + 1, layer[j, i], a, density, out)
+    for j in range(cuda.blockIdx.x, rows, cuda.gridDim.x):
+        value = 1e300
+        for i in range(thread, columns, threads):
+            stable_step_run(j, i, i + 1, layer[j, i], a, density, out)
+            value = _combined(J_LEAST, value, out[j, i])
+        least[j] = _total(J_LEAST, value, shared)
