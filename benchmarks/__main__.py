@@ -1,4 +1,4 @@
-"""Speed of the stepping on this machine beside the same arithmetic in C: ``python -m benchmarks``.
+"""Speed of the stepping on this machine beside the same arithmetic in C and in NumPy: ``python -m benchmarks``.
 
 Contenders take turns within each repetition, so that what else the machine does hits all of them alike. The table has
 element updates per second (best of all repetitions) and the ratio to the faster C version.
@@ -18,10 +18,11 @@ import numpy as np
 
 from benchmarks.c_version import CVersion, compiled
 from benchmarks.numba_version import NumbaVersion
-from benchmarks.problem import STATE, problem
+from benchmarks.numpy_version import NumpyVersion
+from benchmarks.problem import STATE, Problem, problem
 from wrinklewave.environment import processor, versions
 
-SIZES = (10_000, 30_000, 100_000, 1_000_000, 4_000_000)
+SIZES = (10_000, 15_000, 100_000, 1_000_000, 4_000_000)
 QUICK_SIZES = (10_000, 100_000)
 UPDATES = 6e6  # per timing
 CHECKED_STEPS = 50
@@ -32,17 +33,20 @@ TRAFFIC_BYTES = (2 + 2 * 2 + 2 * 2 + 1 + 2 * 6) * 8
 """Moved per update, if nothing but the row buffers stays in a cache: reads, and writes where there are any."""
 
 
-def check(n_elements: int, folder: Path) -> float:
-    """Largest relative difference between C and the package after some steps."""
+def check(n_elements: int, folder: Path) -> dict[str, float]:
+    """Largest relative difference from the package, of C and of NumPy, after some steps."""
     start = problem(n_elements)
-    ours, theirs = start.copy(), start.copy()
+    ours, in_c, in_numpy = start.copy(), start.copy(), start.copy()
     NumbaVersion(ours).advance(CHECKED_STEPS)
-    CVersion(next(iter(compiled(folder).values())), theirs).advance(CHECKED_STEPS)
-    differences = []
-    for name in STATE:
-        a, b = getattr(ours.model.arrays, name), getattr(theirs.model.arrays, name)
-        differences.append(float(np.abs(a - b).max() / np.abs(a).max()))
-    return max(differences)
+    NumpyVersion(in_numpy).advance(CHECKED_STEPS)
+    CVersion(next(iter(compiled(folder).values())), in_c).advance(CHECKED_STEPS)
+    return {"C": difference(ours, in_c), "NumPy": difference(ours, in_numpy)}
+
+
+def difference(ours: Problem, theirs: Problem) -> float:
+    """Largest difference between two states, relative to the largest value."""
+    pairs = ((getattr(ours.model.arrays, name), getattr(theirs.model.arrays, name)) for name in STATE)
+    return max(float(np.abs(a - b).max() / np.abs(a).max()) for a, b in pairs)
 
 
 def contenders(n_elements: int, folder: Path, threads: int) -> dict[str, Callable[[int], None]]:
@@ -56,16 +60,17 @@ def contenders(n_elements: int, folder: Path, threads: int) -> dict[str, Callabl
     found |= {"kernel": one.kernel, "step, 1 thread": one.advance}
     if threads > 1:
         found["step, 2 threads"] = NumbaVersion(start.copy(), 2).advance
-    return found
+    return found | {"NumPy step": NumpyVersion(start.copy()).advance}
 
 
 def measure(n_elements: int, folder: Path, threads: int, repetitions: int) -> dict[str, float]:
     """Best element updates per second of every contender."""
     runs = contenders(n_elements, folder, threads)
-    n_steps = max(2, round(UPDATES / n_elements))
     rates = dict.fromkeys(runs, 0.0)
     for repetition in range(repetitions + 1):
         for name, run in runs.items():
+            updates = UPDATES / 20 if name.startswith("NumPy") else UPDATES
+            n_steps = max(2, round(updates / n_elements))
             begin = time.perf_counter()
             run(n_steps)
             if repetition:  # the first warms up
@@ -99,12 +104,16 @@ def line(n_elements: int, rates: dict[str, float], bandwidth: float) -> str:
         f"{two / 1e6:.1f}",
         f"{two / one:.2f}",
         f"{one * TRAFFIC_BYTES / bandwidth:.2f}",
+        f"{rates['NumPy step'] / 1e6:.1f}",
     )
     return "| " + " | ".join(cells) + " |"
 
 
-HEADING = """| elements | kernel | of C | step, 1 thread | of C | step, 2 threads | of 1 thread | of copy bandwidth |
-| --- | --- | --- | --- | --- | --- | --- | --- |"""
+COLUMNS = (
+    *("elements", "kernel", "of C", "step, 1 thread", "of C", "step, 2 threads", "of 1 thread"),
+    *("of copy bandwidth", "NumPy step"),
+)
+HEADING = "| " + " | ".join(COLUMNS) + " |\n|" + " --- |" * len(COLUMNS)
 
 
 def main() -> None:
@@ -119,14 +128,16 @@ def main() -> None:
         "versions": versions(),
     }
     with tempfile.TemporaryDirectory() as scratch:
-        difference = check(QUICK_SIZES[0], Path(scratch))
-        if not difference < TOLERANCE:
-            raise SystemExit(f"C and numba differ by {difference:.1e} after {CHECKED_STEPS} steps")
+        differences = check(QUICK_SIZES[0], Path(scratch))
+        for name, found_difference in differences.items():
+            if not found_difference < TOLERANCE:
+                raise SystemExit(f"{name} differs by {found_difference:.1e} after {CHECKED_STEPS} steps")
         bandwidth = copy_bandwidth()
-        found |= {"difference_after_50_steps": difference, "copy_bytes_per_s": bandwidth, "rates": {}}
+        found |= {"differences_after_50_steps": differences, "copy_bytes_per_s": bandwidth, "rates": {}}
         print(f"{found['machine']}, {found['date']}; million element updates per second")
         print(
-            f"C and numba agree to {difference:.1e} after {CHECKED_STEPS} steps; copy {bandwidth / 1e9:.1f} GB/s;"
+            f"C and NumPy agree with it to {max(differences.values()):.1e} after {CHECKED_STEPS} steps; "
+            f"copy {bandwidth / 1e9:.1f} GB/s;"
         )
         print(
             f"{STATE_BYTES} bytes kept per element, {TRAFFIC_BYTES} moved per update\n\n{HEADING}", flush=True
