@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wrinklewave import surface as surfaces
 from wrinklewave.config.drives import CompressionDrive, EndMotionDrive, StrikerDrive
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from wrinklewave.config.case import Case
 
 FRAMES_BEFORE = 20
+IMAGES = 60
 PIXELS_PER_METRE = 20e3
 WIRE_PLACES = (0.25, 0.5, 0.75)
 
@@ -58,7 +60,8 @@ def film_run(
     """Film a run: a recording, its truth, and an experiment file.
 
     An impact is filmed from 20 frames before contact until the run ends. A quasi-static compression is filmed
-    in ``frames`` (60 by default) pictures of equal spacing in time.
+    in ``frames`` (60 by default) pictures of equal spacing in time; a surface motion whose ``procedure`` is
+    "quasi-static" is a series of images already, and filmed image by image.
 
     Args:
         run: folder of a run, or a surface motion (NetCDF).
@@ -80,16 +83,30 @@ def film_run(
         viewer = viewer.at_contrast_to_noise(contrast_to_noise)
     length = float(surface.attrs["length"])
     places = tuple(share * length for share in WIRE_PLACES) if wires is None else tuple(wires)
-    slow = case is not None and isinstance(case.drive, CompressionDrive)
+    slow = _is_slow(surface, case)
     recording = film(
         surface,
         viewer,
         striker=None if case is None or slow else _striker(case),
         wires=Wires(X=places) if places and not slow else None,
-        times=np.linspace(0.0, float(surface["time"].values[-1]), frames or 60) if slow else None,
+        times=_image_times(surface, frames) if slow else None,
         frames_before=FRAMES_BEFORE,
     )
     return _write(recording, Path(video), surface, case, threads, progress)
+
+
+def _is_slow(surface: xr.Dataset, case: Case | None) -> bool:
+    """Whether it is a quasi-static test."""
+    slowly_driven = case is not None and isinstance(case.drive, CompressionDrive)
+    return slowly_driven or surface.attrs.get("procedure") == "quasi-static"
+
+
+def _image_times(surface: xr.Dataset, frames: int | None) -> NDArray[np.float64]:
+    """When the images of a quasi-static test are taken [s]."""
+    times = surface["time"].values
+    if frames is None and surface.attrs.get("procedure") == "quasi-static":
+        return np.asarray(times, dtype=float)
+    return np.linspace(times[0], times[-1], frames or IMAGES)
 
 
 def _write(
@@ -130,7 +147,7 @@ def _experiment(
     recording: Film, video: Path, truth: xr.Dataset, surface: xr.Dataset, case: Case | None
 ) -> dict[str, Any]:
     """Tables of the experiment file: what an experimenter would know, no more."""
-    slow = recording.scene.striker is None and case is not None and isinstance(case.drive, CompressionDrive)
+    slow = _is_slow(surface, case)
     tables: dict[str, Any] = {
         "experiment": {
             "kind": "quasi-static" if slow else "impact",

@@ -35,7 +35,9 @@ WirePlaces = Annotated[
     list[str] | None,
     typer.Option("--wire", metavar="X", help='Probe wire at this undeformed x, as "12 mm"; may be repeated.'),
 ]
-Frames = Annotated[int, typer.Option(metavar="N", help="Number of pictures of a quasi-static run.")]
+Frames = Annotated[
+    int | None, typer.Option(metavar="N", help="Number of pictures of a quasi-static run; 60 if left out.")
+]
 Seed = Annotated[int, typer.Option(help="Of the noise.")]
 Threads = Annotated[int, typer.Option(metavar="N", help="Threads that render.")]
 
@@ -51,7 +53,7 @@ def film(
     bit_depth: BitDepth = None,
     tilt: Tilt = 0.0,
     wire: WirePlaces = None,
-    frames: Frames = 60,
+    frames: Frames = None,
     seed: Seed = 0,
     threads: Threads = 2,
 ) -> None:
