@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from wrinklewave.experiments.compare import compare
     from wrinklewave.experiments.filming import film_run
     from wrinklewave.experiments.measure import Measurement, measure
+    from wrinklewave.experiments.measure_quasi_static import measure_quasi_static
+    from wrinklewave.experiments.quasi_static_test import quasi_static_test
     from wrinklewave.experiments.simulate import Run, simulate
     from wrinklewave.experiments.simulated_surface import rewrinkled
     from wrinklewave.imaging.frames import open_recording
@@ -45,7 +47,9 @@ __all__ = [
     "load_case",
     "load_experiment",
     "measure",
+    "measure_quasi_static",
     "open_recording",
+    "quasi_static_test",
     "read_surface",
     "rewrinkled",
     "simulate",
@@ -64,7 +68,9 @@ _HOMES = {
     "load_case": "config.reading:load_case",
     "load_experiment": "config.experiment:load_experiment",
     "measure": "experiments.measure:measure",
+    "measure_quasi_static": "experiments.measure_quasi_static:measure_quasi_static",
     "open_recording": "imaging.frames:open_recording",
+    "quasi_static_test": "experiments.quasi_static_test:quasi_static_test",
     "read_surface": "surface:read",
     "rewrinkled": "experiments.simulated_surface:rewrinkled",
     "simulate": "experiments.simulate:simulate",

@@ -30,8 +30,9 @@ if TYPE_CHECKING:
 
 NOISE_ENVELOPE = np.sqrt(np.pi / 2)
 """Mean envelope of Gaussian noise over its standard deviation."""
-ARC_CUTOFF = 2.0
-"""Cut-off of the arc's smoothing over the filter's: next to the ends the filter follows the last half wave."""
+ARC_CUTOFF = 1.4
+"""Cut-off of the arc's smoothing over the filter's: where wrinkles reach the ends, the filter follows the last half
+wave and lengthens the arc; too long a cut-off rounds the bulge and shortens it."""
 MARGIN_SHARE = 0.5
 """Wrinkles count as suppressed where their envelope stays below this share of the mean in the window."""
 DOUBLED_SHARE = 0.1

@@ -138,7 +138,10 @@ def measure(
             cure="other kinds have procedures of their own",
         )
     begin = time.perf_counter()
-    with open_experiment(experiment) as source, _folder(experiment, out, resume, overwrite) as folder:
+    with (
+        open_experiment(experiment) as source,
+        measurement_folder(experiment, out, resume, overwrite) as folder,
+    ):
         appearance, wires = learn(experiment, source)
         store = folder.blocks(_origin(experiment, source))
         measurer = FrameMeasurer(appearance, wires=wires, resolution=experiment.edge.resolution)
@@ -255,7 +258,7 @@ def _evaluate(
 
 
 @contextmanager
-def _folder(
+def measurement_folder(
     experiment: Experiment, out: str | Path | None, resume: bool, overwrite: bool
 ) -> Iterator[MeasurementFolder]:
     """The folder for the results, or one that is gone afterwards."""

@@ -24,11 +24,6 @@ class MeasurementFolder:
     path: Path
 
     @property
-    def frames(self) -> Path:
-        """Folder of the measured frames of a measurement that has not ended."""
-        return self.path / ".frames"
-
-    @property
     def surface(self) -> Path:
         """The surface motion."""
         return self.path / "surface.nc"
@@ -52,9 +47,9 @@ class MeasurementFolder:
         write_text(path / "experiment.toml", experiment.to_toml())
         return folder
 
-    def blocks(self, origin: str) -> BlockStore:
-        """Where measured frames are kept; ``origin`` says what they are measured of."""
-        return BlockStore(self.frames, origin)
+    def blocks(self, origin: str, name: str = "") -> BlockStore:
+        """Where measured frames are kept; ``origin`` says what they are measured of, ``name`` which of several."""
+        return BlockStore(self.path / f".{name}frames", origin)
 
     def write_summary(self, summary: dict[str, Any]) -> None:
         """Scalar results."""
@@ -67,7 +62,6 @@ class MeasurementFolder:
         self.write_summary(summary)
 
     def _clear(self) -> None:
-        (self.path / "summary.json").unlink(missing_ok=True)
-        self.surface.unlink(missing_ok=True)
-        for file in self.frames.glob("*"):
-            file.unlink()
+        for earlier in ("summary.json", "*surface.nc", "*series.csv", ".*frames/*"):
+            for file in self.path.glob(earlier):
+                file.unlink()

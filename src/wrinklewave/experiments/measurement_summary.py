@@ -29,11 +29,11 @@ NAMED_FRAMES = 5
 
 
 def surface_attributes(
-    experiment: Experiment, appearance: Appearance, pixels: PixelMap, impact: Impact
+    experiment: Experiment, appearance: Appearance, pixels: PixelMap, impact: Impact | None = None
 ) -> dict[str, Any]:
     """Attributes of a measured surface motion; those that are not known are left out."""
     sample = experiment.sample
-    distance = impact.stop_distance * pixels.pixel_size
+    distance = impact.stop_distance * pixels.pixel_size if impact else np.nan
     attributes = {
         "kind": "measurement",
         "name": experiment.name,
@@ -42,7 +42,7 @@ def surface_attributes(
         "critical_strain": sample.critical_strain,
         "critical_wavelength": sample.critical_wavelength,
         "stop_distance": distance if np.isfinite(distance) else None,
-        "contact_on_recording_clock": impact.contact.time,
+        "contact_on_recording_clock": impact.contact.time if impact else None,
         "pixel_size": pixels.pixel_size,
         "origin_column": pixels.origin[0],
         "origin_row": pixels.origin[1],

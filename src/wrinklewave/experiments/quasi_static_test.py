@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 Scalars = Iterator[tuple[str, float]]
 
 ALL_STRAINS = (-1.0, 1.0)
+DRIFT_SIGMAS, NOTICEABLE_DRIFT = 3.0, 0.01
+"""A change of the material wavelength over the test that is significant, and worth a warning."""
 LENGTH_TOLERANCE = 0.01
 """Relative difference between the arc of the undeformed images and the sample's length that nobody should overlook."""
 
@@ -100,7 +102,7 @@ def quasi_static_test(
     if later is not None and repetition is not None:
         summary |= {f"second_{name}": value for name, value in _scalars(later)}
         summary |= dict(_repetition_scalars(first, later, repetition))
-    known = {name: float(value) if math.isfinite(value) else None for name, value in summary.items()}
+    known = {name: value if math.isfinite(value) else None for name, value in summary.items()}
     warnings = tuple(warning for test in (first, *others) for warning in _warnings(test))
     return QuasiStaticTest(first, later, repetition, known, warnings)
 
@@ -145,7 +147,7 @@ def _scalars(test: TestSeries) -> Scalars:
     series, fit = test.series, test.fit
     last = int(np.nanargmax(series.strain))
     yield "images", series.strain.size
-    yield "strain_max", series.strain[last]
+    yield "strain_max", float(series.strain[last])
     yield from _fitted(fit)
     yield "amplitude_max_m", np.fmax.reduce(series.amplitude)
     yield "wavelength_at_strain_max_m", series.wavelength[last]
@@ -163,6 +165,7 @@ def _fitted(fit: CompressionFit | None) -> Scalars:
         ("critical_strain", ""),
         ("critical_wavelength", "_m"),
         ("initial_amplitude", "_m"),
+        ("drift", "_per_strain"),
     ):
         yield f"{name}{ending}", unknown if fit is None else getattr(fit, name)
         yield f"{name}_sigma{ending}", sigmas.get(name, unknown)
@@ -206,7 +209,20 @@ def _warnings(test: TestSeries) -> Iterator[str]:
             f"{series.name}: the sample was wrinkled before ({1e6 * fit.initial_amplitude:.0f} um), above "
             "analysis.wrinkle_threshold: its critical strain is not where wrinkles appear, but where they would."
         )
+    if fit is not None:
+        yield from _drift_warnings(series.name, fit)
     yield from _margin_warnings(series)
+
+
+def _drift_warnings(name: str, fit: CompressionFit) -> Iterator[str]:
+    """Whether the wavelength of the material changes."""
+    change = fit.drift * (fit.strains[1] - fit.critical_strain)
+    if abs(fit.drift) > DRIFT_SIGMAS * fit.sigmas["drift"] and abs(change) > NOTICEABLE_DRIFT:
+        yield (
+            f"{name}: the wavelength in the undeformed material changes by {change:+.1%} over the test. Either the "
+            "sample is not strained evenly along its surface, or the wrinkles do not keep their material. "
+            "critical_wavelength_m is that at the critical strain."
+        )
 
 
 def _margin_warnings(series: CompressionSeries) -> Iterator[str]:

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from wrinklewave.environment import versions
 from wrinklewave.experiments.run_folder import write_text
 from wrinklewave.figures.compression import COMPRESSION_FIGURES, CompressionInputs, write_compression_figures
+from wrinklewave.figures.detections import Detection
+from wrinklewave.imaging.frames import Image
+from wrinklewave.imaging.prepared import open_experiment
 from wrinklewave.report.formats import shown
 from wrinklewave.report.page import ReportContext, environment, picture
 
 if TYPE_CHECKING:
+    from wrinklewave.experiments.measure_quasi_static import MeasuredSeries, QuasiStaticMeasurement
     from wrinklewave.experiments.quasi_static_test import QuasiStaticTest
 
 HEADLINE = (
@@ -28,24 +34,70 @@ HEADLINE = (
 )
 
 
+def present_measured_test(measurement: QuasiStaticMeasurement) -> Path:
+    """Write ``figures/`` and ``report.html`` into the folder of a finished measurement; return the report."""
+    assert measurement.folder is not None  # only measurements with a folder are presented
+    assert measurement.test is not None  # a finished measurement has one
+    return present_quasi_static(
+        CompressionInputs(measurement.test, shown_images(measurement)),
+        measurement.folder,
+        title=measurement.experiment.name,
+        description=measurement.experiment.experiment.description,
+        experiment=measurement.experiment.to_toml(),
+        warnings=measurement.warnings,
+    )
+
+
 def present_quasi_static(
-    inputs: CompressionInputs, folder: Path, *, title: str, description: str = "", experiment: str = ""
+    inputs: CompressionInputs,
+    folder: Path,
+    *,
+    title: str,
+    description: str = "",
+    experiment: str = "",
+    warnings: Sequence[str] = (),
 ) -> Path:
-    """Write ``figures/`` and ``report.html`` into a folder; return the report."""
-    figures = write_compression_figures(folder / "figures", inputs)
+    """Write ``figures/`` and ``report.html`` of a test into a folder; return the report."""
     context = ReportContext(
         title=title,
         description=description,
         outcome=_what_was_done(inputs.test),
         summary=inputs.test.summary,
-        figures=figures,
-        warnings=inputs.test.warnings,
+        figures=write_compression_figures(folder / "figures", inputs),
+        warnings=warnings or inputs.test.warnings,
         case=experiment,
         versions=versions(),
+        kind="measurement",
     )
     report = folder / "report.html"
     write_text(report, quasi_static_page(context))
     return report
+
+
+def shown_images(measurement: QuasiStaticMeasurement) -> tuple[Detection, ...]:
+    """Images of the first test below and above the critical strain, and at the largest strain."""
+    assert measurement.test is not None  # a finished measurement has one
+    series, first = measurement.series[0], measurement.test.first
+    strain = first.series.strain
+    critical = first.fit.critical_strain if first.fit else 0.5 * float(np.nanmax(strain))
+    wanted = (0.5 * critical, 2.0 * critical, float(np.nanmax(strain)))
+    chosen = sorted({int(np.nanargmin(np.abs(strain - goal))) for goal in wanted}, key=lambda i: strain[i])
+    with open_experiment(series.experiment) as source:
+        return tuple(
+            _detection(series, source.frame(int(series.images[i])), i, f"{letter}   strain {strain[i]:.3f}")
+            for letter, i in zip("ABC", chosen, strict=False)
+        )
+
+
+def _detection(series: MeasuredSeries, image: Image, time: int, caption: str) -> Detection:
+    here, pixels = series.surface.isel(time=time), series.pixels
+    return Detection(
+        image=image,
+        caption=f"{caption}, image {series.images[time]}",
+        surface=np.array(pixels.to_pixels(here["x"].values, here["y"].values)),
+        struck_end=float(pixels.to_pixels(here["x_boundary"].values, pixels.height)[0]),
+        wires=np.empty((2, 0)),
+    )
 
 
 def quasi_static_page(context: ReportContext) -> str:

@@ -11,7 +11,6 @@ from wrinklewave.figures.compression.registry import (
     COMPRESSION_FIGURES,
     CompressionFigure,
     CompressionInputs,
-    ShownImage,
     write_compression_figures,
 )
 
@@ -19,6 +18,5 @@ __all__ = [
     "COMPRESSION_FIGURES",
     "CompressionFigure",
     "CompressionInputs",
-    "ShownImage",
     "write_compression_figures",
 ]

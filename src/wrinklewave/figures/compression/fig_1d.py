@@ -30,7 +30,7 @@ def amplitude_against_strain(inputs: CompressionInputs) -> Figure:
             strain, critical_strain=fit.critical_strain, critical_wavelength=fit.critical_wavelength
         )
         sigma = fit.sigmas["critical_strain"]
-        label = f"Eq. 1, $\\epsilon_c$ = {fit.critical_strain:.4f} ± {sigma:.1g}"
+        label = f"Eq. 1, $\\epsilon_c$ = {fit.critical_strain:.4f} ± {sigma:.4f}"
         axes.plot(strain, 1e3 * ideal, "--", color="#0000a7", label=label)
         before = f"wrinkled before, $A_i$ = {1e6 * fit.initial_amplitude:.1f} µm"
         axes.plot(strain, 1e3 * fit.amplitude(strain), color="#c1272d", lw=1.0, label=before)

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     "fig_1e_wavelength",
     number="1E",
     caption="Wavelength on the compressed sample (strongest Fourier component) against the strain along the arc. "
-    "Solid: the fitted wavelength of undeformed material times 1 - ε, of wrinkles that keep their material; dashed: "
-    "Eq. 1 from the same wavelength at the critical strain.",
+    "Solid: the fitted wavelength of undeformed material times 1 - ε, with its drift; dashed: Eq. 1 from the same "
+    "wavelength at the critical strain.",
     possible=lambda inputs: bool(np.isfinite(inputs.test.first.series.wavelength).any()),
 )
 def wavelength_against_strain(inputs: CompressionInputs) -> Figure:
@@ -31,7 +31,7 @@ def wavelength_against_strain(inputs: CompressionInputs) -> Figure:
         strain = inputs.fine_strains()
         label = (
             f"$\\lambda_c$ = {MILLI * fit.compressed_wavelength:.3f} mm at $\\epsilon_c$,\n"
-            f"{MILLI * fit.critical_wavelength:.3f} ± {MILLI * fit.sigmas['critical_wavelength']:.1g} mm of material"
+            f"{MILLI * fit.critical_wavelength:.4f} ± {MILLI * fit.sigmas['critical_wavelength']:.4f} mm of material"
         )
         axes.plot(strain, MILLI * fit.wavelength(strain), color="#c1272d", lw=1.0, label=label)
         equation = wrinkle_wavelength(

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from numpy.typing import NDArray
+import numpy as np
 
+from wrinklewave.figures.detections import Detection
 from wrinklewave.figures.style import RC
-from wrinklewave.imaging.frames import Image
 from wrinklewave.laboratory_frame import Array
 
 if TYPE_CHECKING:
@@ -20,26 +20,11 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True)
-class ShownImage:
-    """An image of the test with what was found in it.
-
-    Attributes:
-        strain: along the arc.
-        image: grey values, shape [height, width].
-        rows: of the surface in each column [px], shape [width]; NaN where none was found.
-    """
-
-    strain: float
-    image: Image
-    rows: NDArray
-
-
-@dataclass(frozen=True)
 class CompressionInputs:
     """What figures are drawn from: the test, and a few images of it if there are any."""
 
     test: QuasiStaticTest
-    images: tuple[ShownImage, ...] = ()
+    images: tuple[Detection, ...] = ()
 
     @property
     def largest_strain(self) -> float:
@@ -48,8 +33,6 @@ class CompressionInputs:
 
     def fine_strains(self) -> Array:
         """Strains for smooth curves."""
-        import numpy as np
-
         return np.linspace(0.0, self.largest_strain, 800)
 
 
