@@ -87,8 +87,8 @@ def table_lines(simulated: xr.Dataset, measured: xr.Dataset, truth: xr.Dataset) 
             "wrinkle amplitude over the simulation's, mean over time", 1.0, agreement.amplitude.mean, 0.02
         ),
         relative("wavelength over the simulation's, mean over time", 1.0, agreement.wavelength.mean, 0.005),
-        in_pixels("struck end, all frames (px)", measured["x_boundary"].values, boundary, pixel),
-        in_pixels("wires, all frames (px)", measured["x_p"].values, wires, pixel),
+        in_pixels("struck end, all frames", measured["x_boundary"].values, boundary, pixel),
+        in_pixels("wires, all frames", measured["x_p"].values, wires, pixel),
     ]
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from wrinklewave.imaging.edges.levels import Levels, find_levels
 from wrinklewave.imaging.edges.profile import blurred_step
 from wrinklewave.imaging.frames import Image
 from wrinklewave.imaging.steps import fit_steps
-from wrinklewave.imaging.strips import strip_mean
+from wrinklewave.imaging.strips import Greys, strip_mean, strip_shares
 
 STRIP_ROWS = 48
 """Rows of the strip in the sample's body in which the ends are looked for."""
@@ -82,13 +83,15 @@ class Appearance:
         """Step of grey values across the surface over the noise of a pixel."""
         return self.contrast / self.noise
 
+    @cached_property
+    def greys(self) -> Greys:
+        """What background and sample look like anywhere in the image."""
+        row, slope = self.line
+        return Greys(row, slope, self.background, self.sample, self.background_gradient, self.sample_gradient)
+
     def strip(self, image: Pixels, top: Floats, n_rows: int) -> Floats:
         """Means of ``n_rows`` rows from ``top`` [n_columns] down as shares between background (0) and sample (1)."""
-        columns = np.arange(top.size)
-        depth = top + 0.5 * (n_rows - 1) - self.line[0] - self.line[1] * columns
-        background = self.background + self.background_gradient * depth
-        sample = self.sample + self.sample_gradient * depth
-        return (strip_mean(image, top, n_rows) - background) / (sample - background)
+        return strip_shares(image, top, n_rows, self.greys)
 
     def body(self, image: Pixels) -> Floats:
         """Shares in the strip of the sample's body, shape [n_columns]."""

@@ -58,7 +58,7 @@ class FrameMeasurer:
         wires, hidden = NO_WIRES, None
         if self.wires is not None and np.isfinite(rough.rows).any():
             wires = find_wires(image, rough.rows, look, self.wires)
-            hidden = hidden_by_wires(wires, self.wires, look, image.shape[1])
+            hidden = hidden_by_wires(wires, self.wires, image.shape[1])
         edge = self.finder.fine(image, rough, hidden)
         locking = PixelLocking.of(edge.rows, np.where(edge.valid, edge.column_rows - edge.rows, np.nan))
         return FrameMeasurement(edge, end, wires, locking)

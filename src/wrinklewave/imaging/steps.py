@@ -29,6 +29,7 @@ class Steps(NamedTuple):
     misfit: float
 
 
+@allocating
 def fit_steps(profile: Floats, first: int, start: Floats, heights: Floats, base: float, blur: float) -> Steps:
     """Fit I(x) = base + sum_k heights[k] E(x - x_k) to a profile, E a blurred, pixel-integrated unit step.
 
@@ -40,14 +41,6 @@ def fit_steps(profile: Floats, first: int, start: Floats, heights: Floats, base:
         base: grey value left of them all.
         blur: standard deviation of the optical blur [px].
     """
-    positions, normal, misfit = _fit(profile, first, start, heights, base, blur)
-    if not np.isfinite(positions).all() or abs(np.linalg.det(normal)) < 1e-300:
-        return Steps(np.full(start.size, np.nan), np.full((start.size, start.size), np.inf), np.inf)
-    return Steps(positions, np.linalg.inv(normal), misfit)
-
-
-@allocating
-def _fit(profile, first, start, heights, base, blur):  # type: ignore[no-untyped-def]
     n_steps = start.size
     at = start.copy()
     normal = np.zeros((n_steps, n_steps))
@@ -92,7 +85,26 @@ def _fit(profile, first, start, heights, base, blur):  # type: ignore[no-untyped
             break
         if largest < _CONVERGED:
             break
-    return at, normal, misfit
+    covariance = _inverse(normal)
+    if not np.isfinite(covariance).all() or not np.isfinite(at).all():
+        at[:] = np.nan
+        covariance[:] = np.inf
+    return Steps(at, covariance, misfit)
+
+
+@allocating
+def _inverse(matrix: Floats) -> Floats:
+    """Of a 1 x 1 or 2 x 2 matrix; NaN if it has none."""
+    inverse = np.full(matrix.shape, np.nan)
+    if matrix.shape[0] == 1:
+        if matrix[0, 0] > 0.0:
+            inverse[0, 0] = 1.0 / matrix[0, 0]
+        return inverse
+    determinant = matrix[0, 0] * matrix[1, 1] - matrix[0, 1] * matrix[1, 0]
+    if abs(determinant) > 1e-300:
+        inverse[0, 0], inverse[1, 1] = matrix[1, 1] / determinant, matrix[0, 0] / determinant
+        inverse[0, 1], inverse[1, 0] = -matrix[0, 1] / determinant, -matrix[1, 0] / determinant
+    return inverse
 
 
 class Bar(NamedTuple):
@@ -110,6 +122,7 @@ class Bar(NamedTuple):
     misfit: float
 
 
+@allocating
 def fit_bar(profile: Floats, first: int, start: float, width: float, blur: float) -> Bar:
     """Fit I(x) = h [E(x - x_0 + w/2) - E(x - x_0 - w/2)] to a profile; position NaN if that fails.
 
@@ -120,11 +133,6 @@ def fit_bar(profile: Floats, first: int, start: float, width: float, blur: float
         width: of the bar [px].
         blur: standard deviation of the optical blur [px].
     """
-    return Bar(*_fit_bar(profile, first, start, width, blur))
-
-
-@allocating
-def _fit_bar(profile, first, start, width, blur):  # type: ignore[no-untyped-def]
     at, height, variance, misfit = start, 0.0, np.inf, np.inf
     shape, slope = np.empty(profile.size), np.empty(profile.size)
     for _ in range(_MAX_STEPS):
@@ -139,14 +147,14 @@ def _fit_bar(profile, first, start, width, blur):  # type: ignore[no-untyped-def
         height = np.dot(profile, shape) / np.dot(shape, shape)
         information = height * height * np.dot(slope, slope)
         if not information > 0.0:
-            return np.nan, height, np.inf, np.inf
+            return Bar(np.nan, height, np.inf, np.inf)
         residual = profile - height * shape
         misfit = np.dot(residual, residual)
         step = height * np.dot(slope, residual) / information
         at += min(max(step, -_LARGEST_STEP), _LARGEST_STEP)
         variance = 1.0 / information
         if abs(at - start) > 0.5 * profile.size:
-            return np.nan, height, np.inf, np.inf
+            return Bar(np.nan, height, np.inf, np.inf)
         if abs(step) < _CONVERGED:
             break
-    return at, height, variance, misfit
+    return Bar(at, height, variance, misfit)

@@ -12,10 +12,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wrinklewave._jit import allocating
 from wrinklewave.errors import InputError
 from wrinklewave.imaging.appearance import Appearance
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 from wrinklewave.imaging.steps import Bar, fit_bar
+from wrinklewave.imaging.strips import Greys, strip_shares
 
 _HALF = 6  # rows of each half of the band, at most
 _FEWEST_ROWS = 4  # of the band
@@ -78,10 +80,11 @@ def learn_wires(
     """
     rows = bridged(appearance.surface)
     band = _band(image, rows, appearance, above=2 * _HALF, n_rows=2 * _HALF)
-    peaks, heights = _peaks(band, _LEAST_HEIGHT)
+    smooth = np.abs(_smooth(band))
+    peaks = _peaks(smooth, _LEAST_HEIGHT)
     if positions is None:
         assert count is not None
-        chosen = np.sort(peaks[np.argsort(-heights)[:count]])
+        chosen = np.sort(peaks[np.argsort(-smooth[peaks.astype(int)])[:count]])
         if chosen.size < count:
             raise InputError(
                 f"{chosen.size} wires are seen above the undeformed surface",
@@ -109,36 +112,64 @@ def find_wires(image: Pixels, rows: Floats, appearance: Appearance, look: WireLo
         appearance, look: of the recording.
     """
     blur = appearance.optics.blur
-    half = look.half
-    far, near = (_band(image, rows, appearance, above=above, n_rows=half) for above in (2 * half, half))
-    band = 0.5 * (far + near)
-    seen = _fit_height(look, blur)
-    peaks, _ = _peaks(np.sign(look.height) * band, _FAINTEST * seen)
-    sigma = 1.0 / appearance.contrast_to_noise / np.sqrt(half)
-    found = [(_fit(far, peak, look.width, blur), _fit(near, peak, look.width, blur)) for peak in peaks]
-    halves = np.array([[bar.position for bar in pair] for pair in found]).reshape(-1, 2)
-    variances = sigma**2 * np.array([[bar.variance for bar in pair] for pair in found]).reshape(-1, 2)
-    good = np.isfinite(halves).all(axis=1)
-    halves, variances = halves[good], variances[good]
+    found = _find(
+        image,
+        rows - _gap(blur),
+        look.half,
+        appearance.greys,
+        np.sign(look.height),
+        _FAINTEST * _seen_height(look, blur),
+        look.width,
+        blur,
+    )
+    column, variance, lean, lean_variance = found[np.isfinite(found).all(axis=1)].T.copy()
+    sigma = 1.0 / appearance.contrast_to_noise / np.sqrt(look.half)
     return WireSightings(
-        column=halves.mean(axis=1),
-        sigma=0.5 * np.sqrt(variances.sum(axis=1)),
-        lean=(halves[:, 1] - halves[:, 0]) / half,
-        lean_sigma=np.sqrt(variances.sum(axis=1)) / half,
-        distance=half + _gap(blur) - 0.5,
+        column,
+        sigma * np.sqrt(variance),
+        lean,
+        sigma * np.sqrt(lean_variance),
+        distance=look.half + _gap(blur) - 0.5,
     )
 
 
-def hidden_by_wires(
-    sightings: WireSightings, look: WireLook, appearance: Appearance, n_columns: int
-) -> Flags:
+@allocating
+def _find(
+    image: Pixels,
+    foot: Floats,
+    half: int,
+    greys: Greys,
+    sign: float,
+    least: float,
+    width: float,
+    blur: float,
+) -> Floats:
+    """Column, lean and the variances of both for noise of variance 1 in a half of the band, shape [n, 4].
+
+    Args:
+        foot: row above which the band begins, shape [n_columns].
+    """
+    far = strip_shares(image, foot - 2 * half, half, greys)
+    near = strip_shares(image, foot - half, half, greys)
+    peaks = _peaks(sign * _smooth(0.5 * (far + near)), least)
+    found = np.empty((peaks.size, 4))
+    for i in range(peaks.size):
+        high, low = _fit(far, peaks[i], width, blur), _fit(near, peaks[i], width, blur)
+        variance = high.variance + low.variance
+        found[i, 0], found[i, 1] = 0.5 * (high.position + low.position), 0.25 * variance
+        found[i, 2], found[i, 3] = (low.position - high.position) / half, variance / half**2
+    return found
+
+
+def hidden_by_wires(sightings: WireSightings, look: WireLook, n_columns: int) -> Flags:
     """Columns of the surface that wires hide, shape [n_columns]; what the blur mixes with them is beside."""
-    columns = np.arange(n_columns)
+    hidden = np.zeros(n_columns, bool)
     reach = 0.5 * look.width + 0.5
     base = sightings.column + sightings.lean * sightings.distance
-    left, right = np.minimum(sightings.column, base) - reach, np.maximum(sightings.column, base) + reach
-    hidden = np.any((columns[:, None] >= left) & (columns[:, None] <= right), axis=1)
-    return np.asarray(hidden)
+    for column, foot in zip(sightings.column.tolist(), base.tolist(), strict=True):
+        left, right = min(column, foot) - reach, max(column, foot) + reach
+        hidden[max(int(np.ceil(left)), 0) : max(int(np.floor(right)) + 1, 0)] = True
+    return hidden
 
 
 NO_WIRES = WireSightings(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0), 0.0)
@@ -184,15 +215,28 @@ def _half_band(image: Pixels, rows: Floats, appearance: Appearance, columns: Flo
     return min(n_rows // 2, _HALF)
 
 
-def _peaks(band: Floats, least: float) -> tuple[Floats, Floats]:
-    """Columns and heights of local maxima of the magnitude above ``least``, smoothed over three columns."""
-    filled = np.nan_to_num(band)
-    smooth = np.abs(np.convolve(filled, np.ones(3) / 3, mode="same"))
-    windows = np.lib.stride_tricks.sliding_window_view(
-        np.pad(smooth, _SMALLEST_SPACING), 2 * _SMALLEST_SPACING + 1
-    )
-    found = np.flatnonzero((smooth > least) & (smooth == windows.max(axis=1)))
-    return found.astype(np.float64), smooth[found]
+@allocating
+def _smooth(band: Floats) -> Floats:
+    """Means over three columns; unknown ones count as zero."""
+    n = band.size
+    smooth = np.zeros(n)
+    for c in range(n):
+        for i in range(max(c - 1, 0), min(c + 2, n)):
+            if np.isfinite(band[i]):
+                smooth[c] += band[i] / 3.0
+    return smooth
+
+
+@allocating
+def _peaks(values: Floats, least: float) -> Floats:
+    """Columns of the local maxima above ``least``."""
+    n = values.size
+    found = np.zeros(n, np.bool_)
+    for c in range(n):
+        if values[c] > least:
+            near = values[max(c - _SMALLEST_SPACING, 0) : min(c + _SMALLEST_SPACING + 1, n)]
+            found[c] = values[c] == near.max()
+    return np.flatnonzero(found).astype(np.float64)
 
 
 def _nearest(peaks: Floats, column: float) -> float:
@@ -207,13 +251,17 @@ def _nearest(peaks: Floats, column: float) -> float:
     return float(near[np.argmin(np.abs(near - column))])
 
 
+@allocating
 def _fit(band: Floats, column: float, width: float, blur: float) -> Bar:
     """A bar near ``column`` on the background beside it."""
     reach = 0.5 * width + 3.0 * blur + 1.0
     first, stop = max(int(column - reach), 0), min(int(column + reach) + 2, band.size)
-    beside = np.concatenate([band[max(first - _BESIDE, 0) : first], band[stop : stop + _BESIDE]])
-    window = band[first:stop] - (np.nanmean(beside) if np.isfinite(beside).any() else 0.0)
-    return fit_bar(window, first, column, width, blur)
+    total, n = 0.0, 0
+    for c in range(max(first - _BESIDE, 0), min(stop + _BESIDE, band.size)):
+        if not first <= c < stop and np.isfinite(band[c]):
+            total += band[c]
+            n += 1
+    return fit_bar(band[first:stop] - total / max(n, 1), first, column, width, blur)
 
 
 def _width(band: Floats, column: float, blur: float) -> float:
@@ -229,7 +277,7 @@ def _width(band: Floats, column: float, blur: float) -> float:
     return float(found.x)
 
 
-def _fit_height(look: WireLook, blur: float) -> float:
+def _seen_height(look: WireLook, blur: float) -> float:
     """Height of the middle of a wire after the blur and the mean of three columns."""
     from math import erf
 

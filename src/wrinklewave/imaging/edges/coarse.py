@@ -27,9 +27,8 @@ def coarse_edge(image: Pixels, sign: float) -> Floats:
         image: grey values, shape [n_rows, n_columns], the sample on the side of the larger row index.
         sign: +1 if the sample is brighter than the background, -1 if darker.
     """
-    response = np.float32(sign) * _step_response(_binned(image))
-    scale = max(float(np.median(response.max(axis=1))), 1e-6)
-    score = np.clip(response / np.float32(scale), 0.0, 1.0)
+    score = _step_response(_binned(image))
+    _score(score, np.float32(sign))
     return _unbinned(_best_path(score), score, image.shape[1])
 
 
@@ -70,6 +69,22 @@ def _step_response(binned: Pixels) -> Pixels:
             above, below = max(r - _REACH, 0), min(r + _REACH, n_rows)
             response[c, r] = (total[below] - total[r]) / (below - r) - (total[r] - total[above]) / (r - above)
     return response
+
+
+@allocating
+def _score(response: Pixels, sign: np.float32) -> None:
+    """Make the responses scores from 0 to 1, in place: 1 is the median of the columns' best."""
+    n_columns, n_rows = response.shape
+    best = np.empty(n_columns)
+    for c in range(n_columns):
+        largest = sign * response[c, 0]
+        for r in range(1, n_rows):
+            largest = max(largest, sign * response[c, r])
+        best[c] = largest
+    gain = sign / np.float32(max(np.median(best), 1e-6))
+    for c in range(n_columns):
+        for r in range(n_rows):
+            response[c, r] = min(max(gain * response[c, r], np.float32(0.0)), np.float32(1.0))
 
 
 @allocating

@@ -61,12 +61,51 @@ def find_columns(
         usable: columns to look at, shape [n_columns].
         tolerance: the last step taken is smaller [px].
     """
-    rows, sigma, residual, count = _locate(
-        image, start, levels.origin, blur, levels.value, levels.gradient, levels.noise, usable, tolerance
+    rows, sigma = _find(
+        image,
+        start,
+        levels.origin,
+        blur,
+        levels.value,
+        levels.gradient,
+        levels.noise,
+        levels.contrast,
+        levels.blocked,
+        usable,
+        tolerance,
     )
-    expected = levels.mean_noise * (1.0 + _MISFIT_SIGMAS / np.sqrt(2.0 * np.maximum(count, 1)))
-    misshapen = (count > 0) & (residual > expected + _MISFIT * levels.contrast)
-    return Columns(rows, sigma).only(~with_neighbours(misshapen | levels.blocked, blur))
+    return Columns(rows, sigma)
+
+
+@allocating
+def _find(
+    image: Pixels,
+    start: Floats,
+    origin: Floats,
+    blur: Floats,
+    value: Floats,
+    gradient: Floats,
+    noise: Floats,
+    contrast: float,
+    blocked: Flags,
+    usable: Flags,
+    tolerance: float,
+) -> tuple[Floats, Floats]:
+    """Rows and standard uncertainties without columns that have another shape, and what the blur mixes with them."""
+    rows, sigma, residual, count = _locate(
+        image, start, origin, blur, value, gradient, noise, usable, tolerance
+    )
+    mean_noise = np.sqrt(0.5 * (noise[0] ** 2 + noise[1] ** 2))
+    strange = blocked.copy()
+    for c in range(rows.size):
+        if count[c] > 0:
+            expected = mean_noise * (1.0 + _MISFIT_SIGMAS / np.sqrt(2.0 * count[c]))
+            strange[c] = strange[c] or residual[c] > expected + _MISFIT * contrast
+    strange = with_neighbours(strange, blur)
+    for c in range(rows.size):
+        if strange[c]:
+            rows[c], sigma[c] = np.nan, np.inf
+    return rows, sigma
 
 
 @allocating

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 from wrinklewave.imaging.edges.coarse import coarse_edge
 from wrinklewave.imaging.edges.columns import Columns, find_columns
@@ -18,7 +19,7 @@ RESOLUTION = 10.0  # px
 _FINEST = 5.5  # lateral blurs to a wavelength: finer ones would be little but amplified noise
 _COARSE_SPAN = 4  # columns on either side for the slope of the coarse edge
 _FEWEST = 4 * ORDER  # columns with an edge
-_ROUGHLY, _FINELY = 0.05, 1e-3  # px: where the columns' iterations stop, first and last time
+_ROUGHLY, _FINELY = 0.05, 5e-3  # px: where the columns' iterations stop, first and last time
 _ASTRAY = 6.0  # standard uncertainties between a column and the surface through its neighbours ...
 _ASTRAY_ROWS = 0.3  # ... and pixels beyond
 
@@ -112,8 +113,9 @@ class EdgeFinder:
         n_columns = image.shape[1]
         stop = n_columns if stop is None else min(stop, n_columns)
         slope = _slope(coarse, _COARSE_SPAN)
-        levels = find_levels(image, coarse, self._seen_blur(slope), max(first, 0), stop)
-        columns = find_columns(image, coarse, self._seen_blur(slope), levels, levels.usable, _ROUGHLY)
+        blur = _seen_blur(slope, self.optics.blur)
+        levels = find_levels(image, coarse, blur, max(first, 0), stop)
+        columns = find_columns(image, coarse, blur, levels, levels.usable, _ROUGHLY)
         if columns.found.sum() < _FEWEST:
             return RoughEdge(np.full(n_columns, np.nan), slope, np.zeros(n_columns), levels)
         fit = self._fit(columns, slope, np.zeros(n_columns))
@@ -128,18 +130,12 @@ class EdgeFinder:
         """The surface at both resolutions; ``blocked`` columns [n_columns] are hidden by something known."""
         levels = rough.levels if blocked is None else rough.levels.without(blocked)
         usable = levels.usable & np.isfinite(rough.rows)
-        columns = find_columns(image, rough.rows, self._seen_blur(rough.slope), levels, usable, _FINELY)
+        blur = _seen_blur(rough.slope, self.optics.blur)
+        columns = find_columns(image, rough.rows, blur, levels, usable, _FINELY)
         columns = columns.only(np.abs(columns.rows - rough.rows) <= _ASTRAY * columns.sigma + _ASTRAY_ROWS)
         if columns.found.sum() < _FEWEST:
             return _nothing(levels)
         return self._edge(columns, rough.beyond, self._fit(columns, rough.slope, rough.beyond), levels)
-
-    def _seen_blur(self, slope: Floats) -> Floats:
-        """Standard deviation of the blur that a column sees at the slope m, without the pixel's height.
-
-        Its square is s^2 (1 + m^2) + m^2/12, where the last term is the pixel's width.
-        """
-        return np.sqrt(self.optics.blur**2 * (1 + slope**2) + slope**2 / 12)
 
     def _fit(self, columns: Columns, slope: Floats, beyond: Floats) -> _Fit:
         """The surface through ``columns`` of a surface of about this ``slope``.
@@ -148,8 +144,7 @@ class EdgeFinder:
         """
         found = np.flatnonzero(columns.found)
         part = slice(int(found[0]), int(found[-1]) + 1)
-        levelled = columns.sigma[found] * np.sqrt(self.optics.blur / self._seen_blur(slope[found]))
-        level_sigma = float(np.median(levelled))
+        level_sigma = _level_sigma(columns.sigma[found], slope[found], self.optics.blur)
         local = local_kernels(slope[part], self._kernels)
         surface, factor = band_limited_surface(
             (columns.rows - beyond)[part],
@@ -200,8 +195,27 @@ def _nothing(levels: Levels) -> Edge:
     return Edge(nowhere, unknown, never, nowhere, unknown, never, levels.contrast, levels.mean_noise)
 
 
+@allocating
+def _seen_blur(slope: Floats, blur: float) -> Floats:
+    """Standard deviation of the blur that a column sees at the slope m, without the pixel's height.
+
+    Its square is s^2 (1 + m^2) + m^2/12, where the last term is the pixel's width.
+    """
+    return np.sqrt(blur**2 * (1.0 + slope**2) + slope**2 / 12.0)
+
+
+@allocating
+def _level_sigma(sigma: Floats, slope: Floats, blur: float) -> float:
+    """Typical standard uncertainty of a column in which the edge were level."""
+    return np.median(sigma * np.sqrt(blur / _seen_blur(slope, blur)))
+
+
+@allocating
 def _slope(rows: Floats, span: int) -> Floats:
     """Central differences over ``span`` columns on either side, shorter at the ends."""
-    c = np.arange(rows.size)
-    left, right = np.maximum(c - span, 0), np.minimum(c + span, rows.size - 1)
-    return (rows[right] - rows[left]) / (right - left)
+    n = rows.size
+    slope = np.empty(n)
+    for c in range(n):
+        left, right = max(c - span, 0), min(c + span, n - 1)
+        slope[c] = (rows[right] - rows[left]) / (right - left)
+    return slope
