@@ -32,7 +32,9 @@ REPEATS = 3
 
 def main() -> None:
     """Render, measure, print."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--frames", type=int, default=96)
     parser.add_argument("--threads", type=int, default=2)
     arguments = parser.parse_args()
@@ -40,7 +42,9 @@ def main() -> None:
     measurer = measurer_of(frames)
     measurer.measure(frames[-1])  # compiles
     blur = rate(lambda: [gaussian_filter(np.float32(image), 1.2) for image in frames[:16]], 16)
-    print(f"{len(frames)} frames of {SHAPE[1]} x {SHAPE[0]} px, 12 bit; a Gaussian blur alone: {blur:.0f} frames/s")
+    print(
+        f"{len(frames)} frames of {SHAPE[1]} x {SHAPE[0]} px, 12 bit; a Gaussian blur alone: {blur:.0f} frames/s"
+    )
     for threads in sorted({1, arguments.threads}):
         with ThreadPoolExecutor(threads) as pool:
             found = rate(lambda pool=pool: list(pool.map(measurer.measure, frames)), len(frames))
@@ -51,7 +55,9 @@ def recording(n_frames: int) -> list[Image]:
     """Frames spread over an impact, the first ones at rest."""
     surface = TravellingPulse(interval=20e-6, end_time=3e-3).surface()
     camera = Camera(shape=SHAPE, scale=SCALE, origin=(36.0, 170.0)).at_contrast_to_noise(20.0)
-    times = np.append(np.linspace(-0.1e-3, -0.02e-3, UNDEFORMED), np.linspace(0.0, 3e-3, n_frames - UNDEFORMED))
+    times = np.append(
+        np.linspace(-0.1e-3, -0.02e-3, UNDEFORMED), np.linspace(0.0, 3e-3, n_frames - UNDEFORMED)
+    )
     scene = film(
         surface,
         camera,

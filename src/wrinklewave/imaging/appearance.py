@@ -222,7 +222,12 @@ def _blur(image: Pixels, brighter: bool, first: int, stop: int) -> float:
     ]
     edge = max(guesses, key=lambda edge: int(edge.column_valid.sum()))
     if not edge.valid.any():
-        raise InputError("no surface is seen in an undeformed frame", key="video.undeformed_frames")
+        raise InputError(
+            "no surface is seen in an undeformed frame",
+            key="video.undeformed_frames",
+            expected="the sample at rest, its surface across most of the region's width, in all of them",
+            cure="lower it, begin later with video.frames, or check region and calibration",
+        )
     blur = _profile_blur(image, edge)
     return _profile_blur(image, EdgeFinder(Optics(blur, brighter)).find(image, first=first, stop=stop))
 
