@@ -1,42 +1,44 @@
-"""Resolved film, rate-dependent model and Eq. 1 in the paper's impact. One command makes numbers and figures:
+"""Resolved film, rate-dependent model and Eq. 1, slowly and in the paper's impact. One command makes everything:
 
     python examples/wrinkle_study/study.py --out runs/wrinkle_study
 
-Every resolved run takes about a minute on a free core; finished runs in the folder are used again.
+Twenty resolved runs of 20 to 60 s on a free core; finished runs in the folder are used again. Beside the figures it
+writes study.csv (all numbers), onset.csv and table.md.
 """
 
 from __future__ import annotations
 
 import argparse
 import csv
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
-import matplotlib as mpl
+import figures
+import slow
 
-mpl.use("Agg")
-import matplotlib.pyplot as plt
-import numpy as np
+from wrinklewave.config import Case, load_case
+from wrinklewave.experiments.wrinkle_study import Member, member_rows, run_member, surface_of_run
 
-from wrinklewave.config import load_case
-from wrinklewave.experiments.wrinkle_study import (
-    Member,
-    amplitudes,
-    run_member,
-    speeds_and_amplitudes,
-    surface_of_run,
-)
-
-BASE = Path(__file__).parents[1] / "paper_resolved.toml"
-IMPERFECTIONS = ("10 um", "30 um")
-MATERIALS = {
-    "viscous": (),
-    # without viscosity the strain behind a plate is its speed over 13 m/s: at 10 m/s the bare surface would fold
-    "elastic": ("substrate.prony=[]", "drive.velocity=2 m/s"),
+HERE = Path(__file__).parent
+BASE = HERE.parent / "paper_resolved.toml"
+ALONE = ("wrinkles.model=none", "mesh.elements=[202, 74]", "mesh.grading=[1, 1]")
+TIMES = 'analysis.times=["0.4 ms", "1.2 ms", "2 ms"]'
+RANDOM = "film.imperfection={{kind='random', amplitude='{imperfection}', wavelengths=['1 mm', '4 mm'], seed={seed}}}"
+COLUMNS = {
+    "model": "",
+    "amplitude_over_quasi_static": ".2f",
+    "wrinkle_to_wavefront_speed_ratio": ".2f",
+    "origin_line_speed_ratio": ".2f",
+    "wavelength_over_expected": ".2f",
+    "over_resolved_median": ".3f",
+    "over_resolved_5_percent": ".2f",
+    "over_resolved_95_percent": ".2f",
+    "mean_over_resolved": ".3f",
+    "onset_over_resolved": ".3f",
 }
-SUBSTRATE_ALONE = ("wrinkles.model=none", "mesh.elements=[202, 74]", "mesh.grading=[1, 1]")
-POSITIONS = (15e-3, 25e-3, 35e-3)
-STYLES = {"resolved": "-", "rate-dependent": "--", "quasi-static": ":"}
-COLOURS = ("#c1272d", "#0000a7", "#008176")
 
 
 def main() -> None:
@@ -45,84 +47,77 @@ def main() -> None:
     parser.add_argument(
         "--set", dest="overrides", action="append", default=[], help="key=value for every run"
     )
+    parser.add_argument("--only", default="", help="part of the names of the members wanted")
     arguments = parser.parse_args()
-    members = run_study(arguments.out, arguments.overrides)
-    write_table(arguments.out / "study.csv", members)
-    draw_amplitudes(members).savefig(arguments.out / "amplitude_against_time.png", dpi=130)
-    draw_profiles(members).savefig(arguments.out / "amplitude_against_position.png", dpi=130)
-
-
-def run_study(out: Path, overrides: list[str]) -> list[Member]:
-    """Every member of the matrix, from new or finished runs."""
+    out: Path = arguments.out
+    out.mkdir(parents=True, exist_ok=True)
+    if not arguments.only:
+        slow.study(out)
     members = []
-    for material, changes in MATERIALS.items():
-        alone = load_case(BASE, [*changes, *overrides, *SUBSTRATE_ALONE])
-        substrate = surface_of_run(alone, out / f"{material}_substrate")
-        for amplitude in IMPERFECTIONS:
-            case = load_case(BASE, [*changes, *overrides, f"film.imperfection.amplitude={amplitude}"])
-            name = f"{material}, {amplitude}"
-            folder = out / name.replace(", ", "_").replace(" ", "")
-            print(f"{name}: {folder}", flush=True)
-            members.append(run_member(name, case, substrate, out=folder))
-    return members
+    for member in impacts(out, arguments.overrides, arguments.only):
+        rows = member_rows(member)
+        members.append((member, rows))
+        print(f"{member.name}: " + summary_line(rows), flush=True)
+    write_csv(out / "study.csv", [row for _, rows in members for row in rows])
+    (out / "table.md").write_text(table([row for _, rows in members for row in rows]), encoding="utf-8")
+    figures.draw_all(out, {member.name: member for member, _ in members})
 
 
-def write_table(path: Path, members: list[Member]) -> None:
-    """Numbers of the study, to a file and to the terminal."""
-    rows = speeds_and_amplitudes(members)
-    with path.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, rows[0])
+def impacts(out: Path, overrides: list[str], only: str) -> Iterator[Member]:
+    """Every member, from new or finished runs."""
+    for group in tomllib.loads((HERE / "members.toml").read_text(encoding="utf-8"))["group"]:
+        wanted = [member for member in group["members"] if only in member["name"]]
+        if not wanted:
+            continue
+        shared = [TIMES, *group.get("set", []), *overrides]
+        substrate = surface_of_run(
+            load_case(BASE, [*shared, *ALONE]), out / folder(f"substrate {group['name']}")
+        )
+        for member in wanted:
+            case = case_of(member, shared)
+            yield run_member(member["name"], case, substrate, out=out / folder(member["name"]))
+
+
+def case_of(member: Mapping[str, Any], shared: list[str]) -> Case:
+    """The resolved case of a member."""
+    amplitude = f"film.imperfection.amplitude={member['imperfection']}"
+    imperfection = RANDOM.format(**member) if "seed" in member else amplitude
+    return load_case(
+        BASE, [imperfection, *shared, *member.get("set", []), f"solver.end_time={member['end']}"]
+    )
+
+
+def folder(name: str) -> str:
+    """Name of a folder for a run."""
+    return re.sub(r"[^a-z0-9.]+", "_", name.lower()).strip("_")
+
+
+def summary_line(rows: list[dict[str, str | float]]) -> str:
+    """The rate-dependent model against the resolved film, on one line."""
+    row = next(row for row in rows if row["model"] == "rate-dependent")
+    return (
+        f"amplitude {row['over_resolved_median']:.3f} ({row['over_resolved_5_percent']:.2f} to "
+        f"{row['over_resolved_95_percent']:.2f}) of the resolved one, onset {row['onset_over_resolved']:.3f}"
+    )
+
+
+def write_csv(path: Path, rows: list[dict[str, str | float]]) -> None:
+    """All numbers; what a model does not have stays empty."""
+    names = list(dict.fromkeys(name for row in rows for name in row))
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.DictWriter(stream, names, restval="")
         writer.writeheader()
         writer.writerows(rows)
-    for row in rows:
-        print(
-            "  ".join(
-                f"{value:.4g}" if isinstance(value, float) else f"{value:16s}" for value in row.values()
-            )
-        )
 
 
-def title(member: Member) -> str:
-    """Substrate, speed of the plate and imperfection."""
-    material, imperfection = member.name.split(", ")
-    speed = getattr(member.case.drive, "velocity", float("nan"))
-    return f"{material} substrate, {speed:g} m/s, imperfection {imperfection.replace('um', 'µm')}"
-
-
-def draw_amplitudes(members: list[Member]) -> plt.Figure:
-    """Amplitude against time at three material points, one panel per member."""
-    figure, axes = plt.subplots(2, 2, figsize=(9, 7.4), sharex=True, sharey=True, layout="constrained")
-    for panel, member in zip(axes.flat, members, strict=True):
-        for model, style in STYLES.items():
-            time = member.surfaces[model]["time"].values
-            curves = amplitudes(member, model, np.array(POSITIONS)).T
-            for X, colour, curve in zip(POSITIONS, COLOURS, curves, strict=True):
-                label = f"X = {X * 1e3:g} mm, {model}"
-                panel.plot(time * 1e3, curve * 1e3, style, color=colour, lw=1.2, label=label)
-        panel.set_title(title(member))
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
-    figure.supxlabel("time (ms)")
-    figure.supylabel("wrinkle amplitude (mm)")
-    return figure
-
-
-def draw_profiles(members: list[Member], times: tuple[float, ...] = (0.8e-3, 1.2e-3, 2e-3)) -> plt.Figure:
-    """Amplitude against material position at three times, one panel per member."""
-    figure, axes = plt.subplots(2, 2, figsize=(9, 7.4), sharex=True, sharey=True, layout="constrained")
-    X = np.linspace(4e-3, 46e-3, 200)
-    for panel, member in zip(axes.flat, members, strict=True):
-        for model, style in STYLES.items():
-            known = member.surfaces[model]["time"].values
-            curves = amplitudes(member, model, X)
-            for time, colour in zip(times, COLOURS, strict=True):
-                curve = curves[int(np.argmin(np.abs(known - time)))]
-                label = f"t = {time * 1e3:g} ms, {model}"
-                panel.plot(X * 1e3, curve * 1e3, style, color=colour, lw=1.2, label=label)
-        panel.set_title(title(member))
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3, fontsize=8)
-    figure.supxlabel("undeformed position X (mm)")
-    figure.supylabel("wrinkle amplitude (mm)")
-    return figure
+def table(rows: list[dict[str, str | float]]) -> str:
+    """The numbers of the documentation's table, as Markdown."""
+    lines = [f"| member | {' | '.join(COLUMNS)} |", "| --- |" + " --- |" * len(COLUMNS)]
+    lines += [
+        f"| {row['member']} | " + " | ".join(format(row[key], how) for key, how in COLUMNS.items()) + " |"
+        for row in rows
+    ]
+    return "\n".join(lines) + "\n"
 
 
 if __name__ == "__main__":

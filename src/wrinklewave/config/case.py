@@ -86,6 +86,10 @@ class Boundaries(Section):
     right: Annotated[Literal["fixed", "roller", "free"], Field(description="the end x = L_0")] = "fixed"
     top: Annotated[Literal["free", "roller"], Field(description="the surface")] = "free"
     wall: Annotated[bool, Field(description="rigid plate at x = L_0 that the surface may not cross")] = True
+    slip: Annotated[
+        NotNegativeLength,
+        Field(description="depth below a free surface down to which a fixed right end slips along its plate"),
+    ] = 0.0
 
 
 class Solver(Section):

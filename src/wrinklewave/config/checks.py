@@ -37,6 +37,12 @@ def case_errors(case: Case) -> Iterator[InputError]:
     yield from _drive(case)
     yield from _times(case)
     yield from _places(case)
+    if case.boundaries.slip >= case.block.height / 2:
+        problem = f"{_mm(case.boundaries.slip)} lets the whole end slip"
+        cure = 'make it smaller, or set boundaries.right = "roller"'
+        yield _error(
+            "boundaries.slip", problem, f"less than half the height, {_mm(case.block.height / 2)}", cure
+        )
     if case.solver.mass_scaling > 1 and not isinstance(case.drive, CompressionDrive):
         problem = f"{case.solver.mass_scaling:g} in a dynamic run would change the wave speeds"
         yield _error("solver.mass_scaling", problem, '1, unless drive.kind = "compression"', "remove it")

@@ -44,7 +44,8 @@ class Boundary(NamedTuple):
     ``motion`` and ``motion_across`` [n_segments, 6] are piecewise cubic histories of the plate or end: t0, t1 [s],
     U0, U1 [m], V0, V1 [m/s]; ``old`` [3, 4, n] holds u, w, vx, vy before the step, of the left column, the bottom row
     and the top row. A free surface may touch itself if there are ``bins`` [3, 2, n_columns] for its segments
-    to be sorted into, edge by edge.
+    to be sorted into, edge by edge. ``slipping`` is how many nodes of a fixed right end, below each free surface,
+    slip along it.
     """
 
     left: int
@@ -58,6 +59,7 @@ class Boundary(NamedTuple):
     motion_across: np.ndarray
     old: np.ndarray
     bins: np.ndarray = NO_BINS
+    slipping: int = 0
 
 
 @serial
@@ -260,7 +262,8 @@ def hold_node(n, drive, dt, a, boundary, totals):
         L = boundary.length
         totals[IMPULSE_RIGHT] += _push(a, j, i, edge, k, L, L, -1.0, 0.0, dt, boundary, totals)
     if boundary.right != FREE and i == columns - 1:
-        _stop(a, j, i, boundary.right, totals)
+        slips = j >= rows - boundary.slipping or (boundary.bottom == FREE and j < boundary.slipping)
+        _stop(a, j, i, ROLLER if slips else boundary.right, totals)
 
 
 @strict

@@ -88,6 +88,7 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
         motion_across=across,
         old=np.zeros((3, 4, max(mesh.X.shape))),
         bins=np.zeros((3, 2, mesh.X.shape[1]), dtype=np.int64),
+        slipping=int((mesh.Y[:, -1] > mesh.Y[-1, -1] - case.boundaries.slip).sum()),
     )
     return assemble(
         mesh,
