@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from wrinklewave.experiments.quasi_static_test import quasi_static_test
     from wrinklewave.experiments.simulate import Run, simulate
     from wrinklewave.experiments.simulated_surface import rewrinkled
+    from wrinklewave.experiments.sweep import sweep
     from wrinklewave.imaging.frames import open_recording
     from wrinklewave.surface import read as read_surface
     from wrinklewave.surface import write as write_surface
@@ -53,6 +54,7 @@ __all__ = [
     "read_surface",
     "rewrinkled",
     "simulate",
+    "sweep",
     "theory_report",
     "write_surface",
 ]
@@ -74,6 +76,7 @@ _HOMES = {
     "read_surface": "surface:read",
     "rewrinkled": "experiments.simulated_surface:rewrinkled",
     "simulate": "experiments.simulate:simulate",
+    "sweep": "experiments.sweep:sweep",
     "theory_report": "theory.report:report",
     "write_surface": "surface:write",
 }

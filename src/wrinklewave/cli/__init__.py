@@ -21,7 +21,7 @@ from wrinklewave import __version__
 from wrinklewave.cli import verbs
 from wrinklewave.errors import WrinklewaveError
 
-ORDER = ("simulate", "restart", "film", "inspect", "measure", "compare", "theory", "doctor", "cite")
+ORDER = ("simulate", "restart", "sweep", "film", "inspect", "measure", "compare", "theory", "doctor", "cite")
 """Verbs as a user meets them; others come after them."""
 
 USERS_MISTAKES = (ENOENT, EACCES, EPERM, EROFS, ENOTDIR, EISDIR, EEXIST)

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import copy
+import re
 import tomllib
 from collections.abc import Sequence
 from typing import Any
 
 from wrinklewave.errors import InputError
+
+_SEPARATED = re.compile(r"""(?:\[[^\]]*\]|"[^"]*"|'[^']*'|[^,])+""")
+"""A stretch between commas; those in brackets and quotes are part of it."""
 
 
 def apply_overrides(data: dict[str, Any], overrides: Sequence[str]) -> tuple[dict[str, Any], tuple[str, ...]]:
@@ -36,6 +40,24 @@ def apply_overrides(data: dict[str, Any], overrides: Sequence[str]) -> tuple[dic
         _set(changed, key, _value(text.strip()))
         keys.append(key)
     return changed, tuple(keys)
+
+
+def alternatives(text: str) -> tuple[str, tuple[str, ...]]:
+    """Return the key of ``key=value, value, ...`` and its values; commas in brackets or quotes separate nothing.
+
+    Raises:
+        InputError: if the text is not of that form.
+    """
+    key, equals, values = text.partition("=")
+    found = tuple(part.strip() for part in _SEPARATED.findall(values) if part.strip())
+    if not equals or not all(key.strip().split(".")) or not found:
+        raise InputError(
+            f'"{text}" names no values to go over',
+            file="--over",
+            expected="section.key=value, value, ...",
+            cure='write, for instance, --over "drive.velocity=5 m/s, 10 m/s"',
+        )
+    return key.strip(), found
 
 
 def _value(text: str) -> Any:

@@ -1,0 +1,163 @@
+"""Many runs of one case: every combination of chosen values, side by side, each on a thread of its own."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from wrinklewave.config import Case, load_case
+from wrinklewave.config.overrides import alternatives
+from wrinklewave.environment import choose_device, processor
+from wrinklewave.errors import InputError
+from wrinklewave.experiments.interruption import Outcome, interruptible
+from wrinklewave.experiments.sweep_table import write_tables
+from wrinklewave.experiments.sweep_workers import Workers, run_member
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+PATIENCE = 0.2
+"""Seconds between two looks at whether an interrupt has come."""
+
+
+@dataclass(frozen=True, eq=False)
+class Member:
+    """One run of a sweep.
+
+    Args:
+        place: of its value along each axis.
+        overrides: that make its case of the common one.
+        case: its case.
+        folder: of its results.
+    """
+
+    place: tuple[int, ...]
+    overrides: tuple[str, ...]
+    case: Case
+    folder: Path
+
+    @property
+    def name(self) -> str:
+        """What is particular to it."""
+        return ", ".join(self.overrides)
+
+
+@dataclass(frozen=True)
+class SweepProgress:
+    """A run of a sweep has ended.
+
+    Args:
+        done: runs that have ended.
+        total: all runs.
+        name: what is particular to the one that has just ended.
+        summary: its scalar results.
+        runs_per_minute: since the sweep was started or resumed.
+    """
+
+    done: int
+    total: int
+    name: str
+    summary: dict[str, Any]
+    runs_per_minute: float
+
+
+def sweep(
+    case: str | Path | Case,
+    over: Sequence[str],
+    *,
+    out: str | Path,
+    overrides: Sequence[str] = (),
+    jobs: int | None = None,
+    device: str = "cpu",
+    resume: bool = False,
+    overwrite: bool = False,
+    progress: Callable[[SweepProgress], None] = lambda state: None,
+) -> tuple[Outcome, xr.Dataset]:
+    """Run every combination of values, and gather the scalar results in one dataset.
+
+    A run that fails is part of the result: ``outcome`` says so, its numbers are NaN, ``message`` in its summary says
+    why. The other runs go on.
+
+    Args:
+        case: a case, or the path of a case file.
+        over: the axes, each ``"key=value, value, ..."``.
+        out: folder for the runs, the dataset ``sweep.nc`` and the table ``sweep.csv``.
+        overrides: ``"key=value"`` for all runs.
+        jobs: runs at a time, each in a process and on a thread of its own; default one per core, and one on a GPU.
+        device: as for :func:`simulate`.
+        resume: go on with the sweep in ``out``: runs that have ended stay as they are, others go on.
+        overwrite: replace an earlier sweep in ``out``.
+        progress: called when a run has ended.
+
+    Returns:
+        How it ended, and the dataset: one dimension per axis, one variable per scalar result of the runs' summaries.
+
+    Raises:
+        InputError: if a combination makes no case, or ``out`` holds another sweep.
+    """
+    axes = [alternatives(text) for text in over]
+    members = list(_members(case, axes, overrides, Path(out)))
+    chosen = choose_device(device)
+    _prepare(members, Path(out), resume=resume, overwrite=overwrite)
+    jobs = jobs or (processor().usable if chosen == "cpu" else 1)
+    begin = time.perf_counter()
+    summaries = {id(m): s for m in members if (s := _ended(m)) is not None}
+    with Workers(min(jobs, len(members))) as workers, interruptible() as wished:
+        waiting: dict[Future[dict[str, Any]], Member] = {
+            workers.submit(run_member, member.case, member.folder, chosen): member
+            for member in members
+            if id(member) not in summaries
+        }
+        total = len(waiting)
+        while waiting and not wished():
+            for future in wait(waiting, PATIENCE, FIRST_COMPLETED).done:
+                member = waiting.pop(future)
+                summary = summaries[id(member)] = future.result()
+                pace = 60 * (total - len(waiting)) / (time.perf_counter() - begin)
+                progress(SweepProgress(len(members) - len(waiting), len(members), member.name, summary, pace))
+    table = write_tables(Path(out), axes, [(m, summaries.get(id(m), {})) for m in members])
+    return (Outcome.INTERRUPTED if waiting else Outcome.FINISHED), table
+
+
+def _members(
+    case: str | Path | Case, axes: Sequence[tuple[str, tuple[str, ...]]], overrides: Sequence[str], out: Path
+) -> Iterator[Member]:
+    if len({key for key, _ in axes}) < len(axes):
+        raise InputError("goes over one key twice", file="--over", cure="give all its values at once")
+    places = itertools.product(*(range(len(values)) for _, values in axes))
+    for n, place in enumerate(places):
+        own = tuple(f"{key}={values[k]}" for (key, values), k in zip(axes, place, strict=True))
+        choices = (*overrides, *own)
+        of_member = case.overridden(*choices) if isinstance(case, Case) else load_case(case, choices)
+        yield Member(place, own, of_member, out / "runs" / f"{n:04d}")
+
+
+def _prepare(members: Sequence[Member], out: Path, *, resume: bool, overwrite: bool) -> None:
+    """See that the folder is free, or holds this very sweep."""
+    earlier = sorted((out / "runs").glob("*/case.toml"))
+    if earlier and not (resume or overwrite):
+        cure = "--resume goes on with it, --overwrite replaces it, --out takes another folder"
+        raise InputError("holds a sweep already", file=out, cure=cure)
+    cases = {member.folder / "case.toml": member.case.to_toml() for member in members}
+    for file in earlier:
+        if overwrite:
+            for name in ("case.toml", "summary.json", "checkpoint.h5"):
+                (file.parent / name).unlink(missing_ok=True)
+        elif cases.get(file) != file.read_text(encoding="utf-8"):
+            cure = "give the case and values of that sweep, or another folder"
+            raise InputError("is of another sweep", file=file, cure=cure)
+
+
+def _ended(member: Member) -> dict[str, Any] | None:
+    """Summary of a run that has ended, well or not."""
+    file = member.folder / "summary.json"
+    if not file.exists():
+        return None
+    summary: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return None if summary["outcome"] == Outcome.INTERRUPTED.name.lower() else summary

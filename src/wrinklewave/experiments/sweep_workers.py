@@ -1,0 +1,64 @@
+"""The processes of a sweep: each takes one run after the other, and ends it with a checkpoint when it is told to."""
+
+from __future__ import annotations
+
+import multiprocessing
+import signal
+from concurrent.futures import Future, ProcessPoolExecutor
+from multiprocessing.synchronize import Event
+from typing import TYPE_CHECKING, Any
+
+from wrinklewave.errors import RunError
+from wrinklewave.experiments.interruption import Outcome
+from wrinklewave.experiments.simulate import simulate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from wrinklewave.config import Case
+    from wrinklewave.experiments.simulate import Progress
+
+_end: Event | None = None  # of this process, if it is a worker
+
+
+class Workers:
+    """A pool of ``jobs`` processes; leaving it as a context ends runs that are still on their way."""
+
+    def __init__(self, jobs: int) -> None:
+        context = multiprocessing.get_context("spawn")  # a fork would copy threads that it does not have
+        self._end = context.Event()
+        self._pool = ProcessPoolExecutor(jobs, context, _begin, (self._end,))
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Call a function in one of the processes."""
+        return self._pool.submit(function, *arguments)
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self._end.set()
+        self._pool.shutdown(cancel_futures=True)
+
+
+def _begin(end: Event) -> None:
+    global _end
+    _end = end
+    signal.signal(
+        signal.SIGINT, signal.SIG_IGN
+    )  # of the whole group: the sweep hears it and tells its processes
+
+
+def run_member(case: Case, folder: Path, device: str) -> dict[str, Any]:
+    """Simulate a case on one thread, or go on with it; returns its summary, also of a run that failed."""
+    try:
+        run = simulate(case, out=folder, threads=1, device=device, resume=True, progress=_stop_if_told)
+        return run.summary
+    except RunError as error:
+        return {"outcome": Outcome.FAILED.name.lower(), "message": str(error)}
+
+
+def _stop_if_told(state: Progress) -> None:
+    if _end is not None and _end.is_set():
+        signal.raise_signal(signal.SIGTERM)  # a run takes it as the wish to end with a checkpoint
