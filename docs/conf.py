@@ -17,6 +17,7 @@ extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
     "sphinx.ext.mathjax",
+    "sphinx-mathjax-offline",  # formulae without a network
     "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
     "references",
