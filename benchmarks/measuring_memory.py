@@ -58,10 +58,10 @@ def main() -> None:
         size = n_frames * SHAPE[0] * SHAPE[1] * 2
         print(f"{n_frames} frames, {size / 1e9:.2f} GB: at most {peaks[n_frames]:.0f} MB")
     short, long = peaks.values()
-    frame = SHAPE[0] * SHAPE[1] * 2
-    growth = (long - short) / (arguments.frames * frame)
-    whole = long + growth * (GIGABYTES * 1e9 - 2 * arguments.frames * frame)
-    print(f"growth: {1e9 * growth:.2f} MB per GB of frames; a recording of {GIGABYTES} GB: {whole:.0f} MB")
+    growth = (long - short) / (arguments.frames * SHAPE[0] * SHAPE[1] * 2 / 1e9)
+    print(
+        f"growth: {growth:+.1f} MB per GB of frames, {GIGABYTES * max(growth, 0.0):.0f} MB over {GIGABYTES} GB"
+    )
 
 
 def measured(source: FrameSource, folder: Path) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import signal
+import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 from pathlib import Path
@@ -19,11 +20,13 @@ from wrinklewave.cli import application
 from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.errors import InputError
 from wrinklewave.experiments import frame_blocks
+from wrinklewave.experiments import measure as measuring
 from wrinklewave.experiments.frame_blocks import FrameBlock, measure_block
 from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.measure import MeasuringProgress, learn, measure
 from wrinklewave.imaging.camera import Camera, Striker, Wires, film
 from wrinklewave.imaging.frame_measuring import FrameMeasurer
+from wrinklewave.imaging.frames import ArraySource, FrameSource, Image
 from wrinklewave.imaging.prepared import open_experiment
 from wrinklewave.imaging.writing import write_recording
 from wrinklewave.wrinkling.travelling_pulse import TravellingPulse
@@ -137,8 +140,6 @@ def test_whichever_way_the_camera_was_held(filmed: Path, measured: ww.Measuremen
     """Turned upside down and mirrored: struck from the right, sample above."""
     with open_experiment(load_experiment(filmed / "impact.toml")) as source:
         turned = np.stack([source.frame(i)[::-1, ::-1] for i in range(source.n_frames)])
-        from wrinklewave.imaging.frames import ArraySource
-
         write_recording(ArraySource(turned, bit_depth=12, frame_rate=50e3), tmp_path / "turned.tif")
     text = EXPERIMENT.format(file="turned.tif", x_axis="left", y_axis="down")
     (tmp_path / "turned.toml").write_text(text, "utf-8")
@@ -218,6 +219,40 @@ def test_what_cannot_be_measured_is_refused(filmed: Path, tmp_path: Path) -> Non
     (tmp_path / "case.toml").write_text("")
     with pytest.raises(InputError, match="holds a run"):
         measure(at_rest, out=tmp_path)
+
+
+class Prolonged(FrameSource):
+    """A recording that goes on with its last frame."""
+
+    def __init__(self, source: FrameSource, n_frames: int) -> None:
+        super().__init__()
+        self._source, self.n_frames, self.shape = source, n_frames, source.shape
+        self.bit_depth, self.white_level, self.frame_rate = source.bit_depth, source.white_level, 50e3
+        self.description = "prolonged"
+
+    def _read(self, index: int) -> Image:
+        return self._source.frame(min(index, self._source.n_frames - 1))
+
+
+def test_memory_does_not_grow_with_the_recording(
+    filmed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(frame_blocks, "MOST_FRAMES", 16)
+    monkeypatch.setattr(measuring, "ANALYSED_VALUES", 20_000)
+    shutil.copy(filmed / "impact.toml", tmp_path)
+    peaks, lengths = [], (100, 300)
+    for n_frames in lengths:
+        with open_experiment(load_experiment(filmed / "impact.toml")) as source:
+            write_recording(Prolonged(source, n_frames), tmp_path / "impact.tif")
+            added = (lengths[1] - lengths[0]) * source.shape[0] * source.shape[1] * source.dtype.itemsize
+        tracemalloc.start()
+        found = measure(tmp_path / "impact.toml", out=tmp_path / f"{n_frames}", threads=1)
+        peaks.append(tracemalloc.get_traced_memory()[1])
+        tracemalloc.stop()
+        assert found.summary["frames_measured"] == n_frames
+        assert any("are analysed" in warning for warning in found.warnings)
+        assert ww.read_surface(tmp_path / f"{n_frames}").sizes["time"] == n_frames
+    assert peaks[1] - peaks[0] < 0.1 * added
 
 
 def test_blocks_are_stored_as_they_are(filmed: Path, tmp_path: Path) -> None:

@@ -158,5 +158,5 @@ def _stop(track: EndTrack, contact: Moment) -> tuple[Moment, float]:
     share = (goal - column[after - 1]) / (column[after] - column[after - 1])
     step = time[after] - time[after - 1]
     speed = (column[after] - column[after - 1]) / step
-    sigma = float(track.striker_sigma[known][after] / max(speed, 1e-9))
-    return Moment(float(time[after - 1] + share * step), min(sigma, float(step))), distance
+    sigma = float(np.hypot(track.striker_sigma[known][after] / speed, step / np.sqrt(12.0)))
+    return Moment(float(time[after - 1] + share * step), sigma), distance

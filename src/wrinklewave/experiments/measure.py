@@ -42,7 +42,7 @@ LEARNT_BYTES = 100e6
 MOST_LEARNT, FEWEST_LEARNT = 32, 4
 """Frames that say what the sample looks like at rest: so many bytes and at most so many, spread over all that do."""
 OTHER_FRAMES = 24
-ANALYSED_VALUES = 2_000_000
+ANALYSED_VALUES = 1_000_000
 """Heights that are analysed at most: of a longer recording the first part after contact."""
 FRAMES_BEFORE = 20
 SPREAD_TIMES = (0.1, 0.25, 0.7)

@@ -1,0 +1,81 @@
+"""Contact, stop and separation from tracks of the struck end and the striker."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from wrinklewave.experiments.impact_moments import EndTrack, find_moments
+
+RATE = 50e3
+CONTACT, STOP, REST, SPEED = 0.404e-3, 1.034e-3, 40.0, 2e5  # s, s, px, px/s
+WAY = SPEED * (STOP - CONTACT)
+
+
+def impact(noise: float = 0.03, *, recoil: float = 60e3) -> EndTrack:
+    """A plate that pushes at constant speed from contact to stop; then the end runs on and comes back."""
+    random = np.random.default_rng(1)
+    time = np.arange(100) / RATE
+    plate = REST + SPEED * np.clip(time - CONTACT, -np.inf, STOP - CONTACT)
+    end = np.where(time < CONTACT, REST, plate) + recoil * np.maximum(time - STOP, 0.0)
+    touching = np.where((time >= CONTACT) & (time <= STOP), 1.0, 0.0)
+    seen = plate > 4.0
+    return EndTrack(
+        time=time,
+        column=end + random.normal(0.0, noise, time.size),
+        sigma=np.full(time.size, noise),
+        striker=np.where(seen, plate + random.normal(0.0, noise, time.size), np.nan),
+        striker_sigma=np.where(seen, noise, np.nan),
+        touching=np.where(seen, touching, np.nan),
+        rest=REST,
+    )
+
+
+def test_moments_between_frames_are_found_to_a_small_part_of_the_frame_interval() -> None:
+    found = find_moments(impact())
+    assert found.contact.time == pytest.approx(CONTACT, abs=0.02 / RATE)
+    assert abs(found.contact.time - CONTACT) < 4 * found.contact.sigma
+    assert found.stop_distance == pytest.approx(WAY, abs=0.05)
+    # between frames the plate is taken to move evenly, which a sudden stop does not
+    assert abs(found.stop.time - (CONTACT + 0.99 * WAY / SPEED)) < found.stop.sigma < 0.3 / RATE
+    assert found.separation.time == pytest.approx(STOP, abs=0.1 / RATE)
+
+
+def test_a_given_contact_is_kept() -> None:
+    found = find_moments(impact(), contact=0.41e-3)
+    assert (found.contact.time, found.contact.sigma) == (0.41e-3, 0.0)
+
+
+def test_a_gap_that_flickers_during_contact_is_no_separation() -> None:
+    track = impact()
+    touching = track.touching.copy()
+    touching[30] = touching[35] = 0.0
+    found = find_moments(replace(track, touching=touching))
+    assert found.separation.time == pytest.approx(STOP, abs=0.1 / RATE)
+
+
+def test_without_a_striker_in_sight_contact_is_when_the_end_begins_to_move() -> None:
+    track = impact()
+    nowhere = np.full(track.time.size, np.nan)
+    found = find_moments(replace(track, striker=nowhere, striker_sigma=nowhere, touching=nowhere))
+    assert found.contact.time == pytest.approx(CONTACT, abs=1.0 / RATE)
+    assert found.contact.sigma == pytest.approx(1.0 / RATE / np.sqrt(12.0))
+    assert np.isnan([found.stop.time, found.separation.time, found.stop_distance]).all()
+
+
+def test_a_striker_that_never_rests_has_no_stop() -> None:
+    track = impact()
+    moving = replace(track, striker=track.striker + 1e4 * np.maximum(track.time - STOP, 0.0))
+    found = find_moments(moving)
+    assert np.isnan(found.stop.time)
+    assert np.isnan(found.stop_distance)
+
+
+def test_nothing_happens_at_rest() -> None:
+    track = impact()
+    at_rest = replace(
+        track, column=np.full(100, REST), striker=np.full(100, np.nan), touching=np.full(100, np.nan)
+    )
+    assert np.isnan(find_moments(at_rest).contact.time)
