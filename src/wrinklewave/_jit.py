@@ -95,4 +95,4 @@ strict = _compiler(**_NO_COUNTING, forceinline=True)
 to a function costs more than most of these do."""
 
 allocating = _compiler(**_COMMON)
-"""For loops that make arrays of their own or call numpy on them, with strict floating point."""
+"""For loops that make arrays of their own, with strict floating point."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wrinklewave._jit import allocating, scalar, uintp, vector
+from wrinklewave._jit import scalar, serial, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.elements.one_point import HOURGLASS_STIFFNESS
 from wrinklewave.dynamics.elements.quadrilateral import bulk_viscosity, squared_length
@@ -189,7 +189,18 @@ def _sum(values):
     return total
 
 
-@allocating
+@serial
+def _largest(values, sign):
+    """Of ``sign`` times the values; NaN if any is."""
+    largest = sign * values[0]
+    for i in range(values.size):
+        value = sign * values[i]
+        if value > largest or value != value:
+            largest = value
+    return largest
+
+
+@serial
 def survey_share(part, dt, a, memory, terms, work, out):
     """Fill the rows of one share in ``out`` [n_rows, N_COLUMNS] with the sums, or extremes, of each element row.
 
@@ -202,8 +213,8 @@ def survey_share(part, dt, a, memory, terms, work, out):
             survey_run(j, start, stop, layer, dt, a, memory, terms, row)
         for column in range(HOURGLASS_AMPLITUDE):
             out[j, column] = _sum(row[column])
-        out[j, HOURGLASS_AMPLITUDE] = row[HOURGLASS_AMPLITUDE].max()
-        out[j, J_LEAST], out[j, J_MOST] = row[J_LEAST].min(), row[J_MOST].max()
+        out[j, HOURGLASS_AMPLITUDE] = _largest(row[HOURGLASS_AMPLITUDE], 1.0)
+        out[j, J_LEAST], out[j, J_MOST] = -_largest(row[J_LEAST], -1.0), _largest(row[J_MOST], 1.0)
 
 
 def kinetic_energy(inverse_mass: np.ndarray, vx: np.ndarray, vy: np.ndarray) -> float:
