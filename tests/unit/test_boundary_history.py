@@ -45,6 +45,18 @@ def test_history_starts_at_contact_and_counts_from_rest(X: tuple[float, ...]) ->
     np.testing.assert_allclose(found["u_y_m"], (1.0 + 0.2) * t, atol=1e-9)
 
 
+def test_a_wrinkle_at_the_corner_is_no_motion_of_the_end() -> None:
+    time = np.arange(-5, 50) * 20e-6
+    surface = tilted(time, (4e-3,))
+    surface.attrs["critical_wavelength"] = 2e-3
+    distance = (surface["x"] - surface["x_boundary"]).transpose("time", "x").values
+    crest = 0.2e-3 * np.cos(2 * np.pi * distance / 1.78e-3)
+    for name in ("y", "u_y"):
+        surface[name].values += np.where(time[:, None] > 0.0, crest, 0.0)
+    found = boundary_columns(surface)
+    np.testing.assert_allclose(found["u_y_m"], 1.2 * found["time_s"], atol=0.01e-3)
+
+
 def test_history_starts_at_a_contact_between_frames() -> None:
     time = (np.arange(-5, 50) + 0.3) * 20e-6
     surface = tilted(time, (4e-3,))
