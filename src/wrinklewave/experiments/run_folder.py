@@ -86,7 +86,7 @@ class RunFolder:
 
     def write_unfinished(self, run: Run) -> None:
         """History and summary of a run that was interrupted or failed."""
-        write_history(self.path / "history.csv", run.history)
+        write_history(self.path / "history.csv", {**run.history, "step": run.history["step"].astype(int)})
         write_json(self.path / "summary.json", run.summary)
 
     def write_finished(self, run: Run) -> None:
@@ -144,7 +144,7 @@ def write_json(path: Path, content: Any) -> None:
     write_text(path, json.dumps(content, indent=2, ensure_ascii=False) + "\n")
 
 
-def write_history(path: Path, history: Mapping[str, NDArray[np.floating[Any]]]) -> None:
+def write_history(path: Path, history: Mapping[str, NDArray[np.number[Any]]]) -> None:
     """Write a table of columns as CSV, with all digits."""
     partial = path.with_name(path.name + ".part")
     with partial.open("w", newline="") as stream:
