@@ -38,7 +38,13 @@ def low_pass(values: ArrayLike, *, spacing: float, cutoff_wavelength: float) -> 
     samples = cutoff_wavelength / spacing
     penalty = (2.0 * np.sin(np.pi / samples)) ** (-2 * ORDER)
     rows = values.reshape(-1, values.shape[-1])
-    return np.stack([_smooth_row(row, penalty) for row in rows]).reshape(values.shape)
+    whole = np.isfinite(rows).all(axis=1)
+    smooth = np.empty_like(rows)
+    if whole.any():  # one matrix for all rows without gaps
+        smooth[whole] = _smooth_rows(rows[whole], penalty)
+    for i in np.flatnonzero(~whole):
+        smooth[i] = _smooth_row(rows[i], penalty)
+    return smooth.reshape(values.shape)
 
 
 def check_cutoff(cutoff_wavelength: float, spacing: float) -> None:
@@ -55,6 +61,17 @@ def check_cutoff(cutoff_wavelength: float, spacing: float) -> None:
             expected=f"more than 2 and at most {MAX_CUTOFF_IN_SAMPLES} samples of {1e3 * spacing:g} mm",
             cure="change the cut-off, or the grid (output.pixel_size of a simulation)",
         )
+
+
+def _smooth_rows(rows: Array, penalty: float) -> Array:
+    """Rows without gaps, shape [n_rows, n]."""
+    from scipy.linalg import solveh_banded
+
+    if rows.shape[1] <= ORDER:
+        return np.full_like(rows, np.nan)
+    matrix = penalty * _penalty_bands(rows.shape[1])
+    matrix[0] += 1.0
+    return np.asarray(solveh_banded(matrix, rows.T, lower=True, check_finite=False)).T
 
 
 def _smooth_row(row: Array, penalty: float) -> Array:

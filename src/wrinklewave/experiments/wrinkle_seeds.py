@@ -15,7 +15,7 @@ from wrinklewave.wrinkling.seeds import Seeds, of_height, of_one_wave, shared_ev
 if TYPE_CHECKING:
     from wrinklewave.config import Case
 
-BANDS = 10
+BANDS = 8
 """Of wavelengths that compete, evenly spaced in wavenumber."""
 BAND_RANGE = (0.4, 2.2)
 """Wavenumbers that compete, over that of the model's wavelength: beyond them hardly anything grows."""

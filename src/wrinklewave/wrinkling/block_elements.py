@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-LAYERS = 20
+LAYERS = 12
 GRADING = 8.0
 """Ratio of the thickest to the thinnest layer of elements, at the surface."""
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])

@@ -23,8 +23,8 @@ from wrinklewave.theory.incremental import PrestressedLayer, film_transfer, pres
 
 Array = NDArray[np.float64]
 
-STRAIN_SPACING = 0.004
-"""Of the table; F is smooth in the strain, and linear interpolation errs by less than 1e-5 of it."""
+STRAIN_SPACING = 0.008
+"""Of the table; F is smooth in the strain, and linear interpolation errs by less than 5e-5 of it."""
 DIFFERENCE = 1e-4
 """Relative step of central differences."""
 

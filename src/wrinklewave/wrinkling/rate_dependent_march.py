@@ -26,7 +26,7 @@ from wrinklewave.wrinkling.rate_dependent_substrate import (
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 1e-8
+TOLERANCE = 1e-7
 """Of the film's strain."""
 MOST_ITERATIONS = 100
 
