@@ -1,4 +1,4 @@
-"""Short runs of small models on one device: every edge, both elements, two materials, a restart.
+"""Runs of the small models on one device, a restart, and a case by its file.
 
 ``python -m support.backend_runs DEVICE FILE.npz`` in a process of its own, since numba decides when it is imported
 whether CUDA is simulated.
@@ -7,122 +7,18 @@ whether CUDA is simulated.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from support.backend_models import EVENTS, MODELS, results, run, struck
 from support.cases import EXAMPLES
-from support.models import K_0, MU_0, MU_1, RHO, TAU, Array, build, distorted, elastic, history, relaxing
+from support.models import Array
 from wrinklewave.dynamics.backends import Device
-from wrinklewave.dynamics.boundary import (
-    FIXED,
-    FREE,
-    LEFT_HELD,
-    LEFT_LINEAR,
-    LEFT_MOVED,
-    LEFT_STRAIGHT,
-    LEFT_STRUCK,
-    ROLLER,
-    Boundary,
-)
 from wrinklewave.dynamics.checkpoint import Record, read_checkpoint, write_checkpoint
-from wrinklewave.dynamics.drives import cubic_segments
-from wrinklewave.dynamics.model import AT_REST, Model, assemble
 from wrinklewave.dynamics.simulation import Simulation
 from wrinklewave.experiments.simulate import simulate
-from wrinklewave.materials.moduli import Viscoelastic
-from wrinklewave.mesh.block import GridMesh
-
-EVENTS = np.array([0.0, 0.4e-4, 1e-4])
-"""An even and an uneven number of steps, and a change of their length."""
-KNOTS = np.linspace(0.0, 1e-3, 9)
-PUSH = cubic_segments(KNOTS, lambda t: 3e3 * t**2, lambda t: 6e3 * t)
-SHEAR = cubic_segments(KNOTS, lambda t: 1e3 * t**2, lambda t: 2e3 * t)
-
-
-def struck() -> Model:
-    """A plate with friction strikes the upper half of a block, which stands on a wall."""
-    return build(
-        distorted(6, 4),
-        relaxing(bulk=False),
-        "one-point",
-        left=LEFT_STRUCK,
-        right=FIXED,
-        bottom=ROLLER,
-        wall=True,
-        friction=0.05,
-        motion=cubic_segments(KNOTS, lambda t: 10.0 * t, lambda t: 10.0 + 0.0 * t),
-        bulk_viscosity=(0.06, 1.2),
-    )
-
-
-GROOVE = np.array(
-    [
-        *((0, 3), (1.3, 3), (2.6, 3), (3.9, 3), (3.8, 2.0), (4.3, 1.3), (5, 1.2)),
-        *((5.7, 1.3), (6.2, 2.0), (6.1, 3), (7.4, 3), (8.7, 3), (10, 3)),
-    ]
-)
-"""A surface with an undercut groove [mm]: it overhangs."""
-
-
-def grooved() -> Model:
-    """The lips of a groove pass each other; more nodes than the simulated GPU has threads."""
-    share = np.linspace(0.0, 1.0, 6)[:, None]
-    mesh = GridMesh(
-        X=((1 - share) * np.linspace(0, 10, 13) + share * GROOVE[:, 0]) * 1e-3,
-        Y=share * GROOVE[:, 1] * 1e-3,
-        layer=np.zeros((5, 12), dtype=np.int64),
-    )
-    boundary = Boundary(
-        *(LEFT_HELD, FIXED, FREE, FREE, False, 10e-3, 0.0, PUSH, AT_REST, np.zeros((3, 4, 13))),
-        bins=np.zeros((3, 2, 13), dtype=np.int64),
-    )
-    model = assemble(mesh, [relaxing(bulk=False)], boundary)
-    closing = np.array([0, 0.4, 0.8, 1.2, 1.15, 0.5, 0, -0.5, -1.15, -1.2, -0.8, -0.4, 0]) * 1e-3
-    model.arrays.u[:] = share * closing
-    model.arrays.vx[:] = 1e4 * share * closing
-    return model
-
-
-def bilayer() -> Model:
-    """Two materials, one with two Prony terms; the stiff one ends early; under an end that moves and stays straight."""
-    mesh = distorted(6, 4, seed=1)
-    layer = mesh.layer.copy()
-    layer[-1, :4] = 1
-    boundary = Boundary(
-        LEFT_STRAIGHT, ROLLER, FREE, ROLLER, True, 6e-3, 0.0, PUSH, AT_REST, np.zeros((3, 4, 7))
-    )
-    soft = Viscoelastic(RHO, MU_0, K_0, np.array([MU_1, MU_0]), np.zeros(2), np.array([TAU, 10 * TAU]))
-    return assemble(GridMesh(mesh.X, mesh.Y, layer), [soft, elastic(mu=4e5, K=2e6)], boundary)
-
-
-def sheared() -> Model:
-    """The fully integrated element with a relaxing bulk, its end moved along and across, the right one free."""
-    mesh = distorted(6, 4, seed=2)
-    boundary = Boundary(LEFT_LINEAR, FREE, FREE, ROLLER, False, 6e-3, 0.0, PUSH, SHEAR, np.zeros((3, 4, 7)))
-    return assemble(mesh, [relaxing(bulk=True)], boundary, one_point=False)
-
-
-def compressed() -> Model:
-    """A whole block, made heavy, pressed along x only; its surfaces are free."""
-    mesh = distorted(6, 4, seed=3)
-    boundary = Boundary(LEFT_MOVED, FIXED, FREE, FREE, True, 6e-3, 0.0, PUSH, AT_REST, np.zeros((3, 4, 7)))
-    return assemble(mesh, [relaxing(bulk=False)], boundary, mass_scaling=4.0)
-
-
-MODELS: dict[str, Callable[[], Model]] = {
-    f.__name__: f for f in (struck, grooved, bilayer, sheared, compressed)
-}
-
-
-def run(model: Model, device: Device) -> dict[str, Array]:
-    """State, fields, totals and history at the end."""
-    simulation = Simulation(model, EVENTS, device=device, history_interval=2.5e-5)
-    for _ in simulation.run():
-        pass
-    return results(simulation)
 
 
 def restarted(device: Device) -> dict[str, Array]:
@@ -149,14 +45,6 @@ def from_case(device: Device) -> dict[str, Array]:
     surface = done.surface
     assert surface is not None  # the run has finished
     return done.history | {name: surface[name].values for name in ("x_p", "y_p", "strain_xx")}
-
-
-def results(simulation: Simulation) -> dict[str, Array]:
-    """What a run leaves behind, by name."""
-    simulation.backend.fetch_all()
-    a = simulation.model.arrays
-    state = {"u": a.u, "w": a.w, "vx": a.vx, "vy": a.vy, "memory": simulation.model.memory}
-    return state | {"fields": simulation.fields(), "totals": simulation.totals} | history(simulation)
 
 
 def main(device: Device, file: str) -> None:

@@ -25,7 +25,7 @@ from numba import cuda
 from numba.cuda import dispatcher, types
 from numba.cuda.typing.typeof import typeof
 
-from support.backend_runs import MODELS
+from support.backend_models import MODELS
 from support.models import build, distorted
 from wrinklewave.dynamics.boundary import N_TOTALS
 from wrinklewave.dynamics.cuda import backend, kernels

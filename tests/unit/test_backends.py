@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from support.backend_runs import EVENTS, MODELS, SHEAR
+from support.backend_models import EVENTS, MODELS, SHEAR
 from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, WORK, position
 from wrinklewave.environment import gpus
 

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.config.history import read_history
 from wrinklewave.dynamics import drives
 from wrinklewave.dynamics.barrier import LINE
 from wrinklewave.dynamics.boundary import (
@@ -28,7 +27,6 @@ from wrinklewave.errors import InputError
 from wrinklewave.materials.moduli import plane_wave_modulus, substrate_moduli
 from wrinklewave.mesh.bilayer import bilayer, warn_if_coarse
 from wrinklewave.mesh.block import GridMesh, block
-from wrinklewave.mesh.imperfection import with_imperfection
 from wrinklewave.theory.film import critical_values, film_material
 
 if TYPE_CHECKING:
@@ -141,6 +139,8 @@ def layers(case: Case) -> tuple[GridMesh, list[Viscoelastic]]:
     )
     warn_if_coarse(mesh, critical_values(film, case.substrate)[1])
     if film.imperfection is not None:
+        from wrinklewave.mesh.imperfection import with_imperfection  # knows case files, as _drive does
+
         mesh = with_imperfection(mesh, film.imperfection, interface=interface, depth=interface - bottom)
     return mesh, [substrate, film_material(film, case.substrate)]
 
@@ -239,6 +239,8 @@ def _drive(case: Case) -> tuple[int, NDArray[np.float64], NDArray[np.float64]]:
         return LEFT_MOVED, ramp, AT_REST
     if drive.kind == "velocity-step":
         return LEFT_MOVED, drives.velocity_step(drive), AT_REST
+    from wrinklewave.config.history import read_history  # a model from parts needs no case files
+
     history = read_history(Path(drive.file))
     motion = drives.measured(history.time, history.u_x, drive.smoothing)
     if history.u_y is None:

@@ -1,0 +1,94 @@
+"""What a machine can do at most, and what it is: measured in the same run as what is held against it."""
+
+from __future__ import annotations
+
+import datetime
+import subprocess
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from wrinklewave._jit import vector
+from wrinklewave.environment import gpus, processor, versions
+
+REPOSITORY = Path(__file__).parents[1]
+TIMING = 0.15
+"""Seconds that a measurement of the processor takes."""
+
+
+def description() -> dict[str, Any]:
+    """Machine, date, commit and versions, for a file of results."""
+    found = gpus()
+    return {
+        "date": str(datetime.date.today()),
+        "commit": _commit(),
+        "processor": processor().name,
+        "cores": processor().usable,
+        "gpu": found if isinstance(found, str) else found[0].name,
+        "versions": versions(),
+    }
+
+
+def _commit() -> str:
+    command = ["git", "-C", str(REPOSITORY), "describe", "--always", "--dirty"]
+    try:
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def copy_bandwidth(n_bytes: float, threads: int) -> float:
+    """Bytes per second, read and written, of copies that touch ``n_bytes`` in all, again and again."""
+    n = max(int(n_bytes / 16 / threads), 1)
+    arrays = [(np.ones(n), np.ones(n)) for _ in range(threads)]
+
+    def copy(part: int) -> int:
+        source, target = arrays[part]
+        stop, done = time.perf_counter() + TIMING, 0
+        while time.perf_counter() < stop:
+            np.copyto(target, source)
+            done += 2 * source.nbytes
+        return done
+
+    return _per_second(copy, threads)
+
+
+CHAIN = 32
+"""Multiply-adds on each number between its load and its store."""
+
+
+@vector
+def _multiply_add(x, a, b, times):
+    for _ in range(times):
+        for i in range(x.size):
+            y = x[i]
+            for _ in range(CHAIN):
+                y = y * a + b
+            x[i] = y
+
+
+def arithmetic_rate(threads: int) -> float:
+    """Additions and multiplications per second that the processor makes of numbers at hand."""
+
+    def work(part: int) -> int:
+        x, done, stop = np.ones(1024), 0, time.perf_counter() + TIMING
+        while time.perf_counter() < stop:
+            _multiply_add(x, 0.999, 1e-3, 100)
+            done += 100 * 2 * x.size * CHAIN
+        return done
+
+    _multiply_add(np.ones(8), 0.999, 1e-3, 1)
+    return _per_second(work, threads)
+
+
+def _per_second(work: Any, threads: int) -> float:
+    """Best of three tries, all threads together."""
+    best = 0.0
+    with ThreadPoolExecutor(threads) as pool:
+        for _ in range(3):
+            begin = time.perf_counter()
+            best = max(best, sum(pool.map(work, range(threads))) / (time.perf_counter() - begin))
+    return best
