@@ -14,11 +14,13 @@ from wrinklewave.experiments.paper_table import (
     NO_NUMBER,
     NOT_REPRODUCED,
     REPRODUCED,
+    Comparison,
     Row,
     as_json,
     paper_table,
 )
 from wrinklewave.report import comparison_html, comparison_table
+from wrinklewave.report.tables import tally
 from wrinklewave.theory.report import Quantity, report
 
 CASE = Path(__file__).parents[2] / "examples" / "paper_impact.toml"
@@ -122,3 +124,14 @@ def test_the_table_is_printed_and_written() -> None:
     assert html.count("<tr>") == len(rows) + 1
     assert html.count("reproduced") >= 3
     assert json.loads(json.dumps(as_json(rows)))[0]["results"]["relaxing"]["ours"] == 62.0
+
+
+def test_the_tally_counts_what_is_reproduced() -> None:
+    results = {"relaxing": Comparison(60.0, 1.0, REPRODUCED, "")}
+    worse = {"relaxing": Comparison(90.0, 1.6, NOT_REPRODUCED, "too fast")}
+    rows = [
+        Row("a", "60", "", "theory", results),
+        Row("b", "57", "", "simulation", worse),
+        Row("c", "57", "", "simulation", results),
+    ]
+    assert tally(rows) == "Reproduced:  relaxing 1 of 1 (theory), 1 of 2 (simulation)"

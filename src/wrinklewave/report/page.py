@@ -16,7 +16,7 @@ from wrinklewave.figures.registry import FIGURES, FigureSpec
 from wrinklewave.figures.side_by_side import ComparisonFigure
 from wrinklewave.laboratory_frame import Array
 from wrinklewave.report.formats import number, shown
-from wrinklewave.report.tables import bulk_choices, remarks
+from wrinklewave.report.tables import bulk_choices, remarks, tally
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -117,7 +117,8 @@ def environment() -> Environment:
 
 
 def _comparison(rows: Sequence[Row]) -> dict[str, Any]:
-    return {"choices": bulk_choices(rows), "comparison": [(row, remarks(row)) for row in rows]}
+    table = [(row, remarks(row)) for row in rows]
+    return {"choices": bulk_choices(rows), "comparison": table, "tally": tally(rows)}
 
 
 def _is_number(value: object) -> bool:

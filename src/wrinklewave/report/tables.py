@@ -19,8 +19,8 @@ def comparison_table(rows: Sequence[Row]) -> Table:
     from rich.table import Table
 
     choices = bulk_choices(rows)
-    table = Table(title="Comparison with the paper", show_lines=True)
-    table.add_column("quantity", ratio=3)
+    table = Table(title="Comparison with the paper", caption=tally(rows), show_lines=True)
+    table.add_column("quantity", ratio=3, overflow="fold")
     table.add_column("paper", ratio=2)
     for bulk in choices:
         table.add_column(bulk, ratio=2)
@@ -30,6 +30,19 @@ def comparison_table(rows: Sequence[Row]) -> Table:
             row.quantity, f"{row.paper}\n[dim]{row.about}[/dim]", *_cells(row, choices), remarks(row)
         )
     return table
+
+
+def tally(rows: Sequence[Row]) -> str:
+    """How many of the paper's numbers and statements each bulk response reproduces, by what they are about."""
+    return "Reproduced:  " + ";  ".join(f"{bulk} {_counts(rows, bulk)}" for bulk in bulk_choices(rows))
+
+
+def _counts(rows: Sequence[Row], bulk: str) -> str:
+    found: dict[str, list[bool]] = {}
+    for row in rows:
+        if bulk in row.results:
+            found.setdefault(row.about, []).append(row.results[bulk].verdict == REPRODUCED)
+    return ", ".join(f"{sum(held)} of {len(held)} ({about})" for about, held in found.items())
 
 
 def bulk_choices(rows: Sequence[Row]) -> list[str]:
