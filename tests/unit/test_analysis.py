@@ -305,3 +305,11 @@ def test_strain_rate_of_a_parabola_in_time() -> None:
     time = np.linspace(0.0, 1e-3, 101)
     rate = strain_rate(time, 1e4 * time[:, None] ** 2 * np.ones(3))
     np.testing.assert_allclose(rate[1:-1], (2e4 * time[1:-1, None]) * np.ones(3), rtol=1e-9)
+
+
+def test_filter_treats_every_row_alike() -> None:
+    rows = np.random.default_rng(1).normal(size=(4, 200))
+    rows[2, 50:70] = np.nan
+    together = low_pass(rows, spacing=1e-4, cutoff_wavelength=2e-3)
+    alone = [low_pass(row, spacing=1e-4, cutoff_wavelength=2e-3) for row in rows]
+    np.testing.assert_allclose(together, alone, rtol=1e-12)
