@@ -149,6 +149,31 @@ def test_whichever_way_the_camera_was_held(filmed: Path, measured: ww.Measuremen
     np.testing.assert_array_equal(again.surface["y"].values, measured.surface["y"].values)
 
 
+def test_a_tilted_sample_is_measured_along_its_own_axes(tmp_path: Path) -> None:
+    camera = Camera.framing(PULSE.surface(), scale=1 / PIXEL, tilt=np.radians(-2.0)).at_contrast_to_noise(
+        20.0
+    )
+    recording = film(
+        PULSE.surface(), camera, striker=Striker(velocity=10.0, stop_distance=1.5e-3), frames_before=12
+    )
+    write_recording(recording, tmp_path / "impact.tif")
+    text = EXPERIMENT.format(file="impact.tif", x_axis="right", y_axis="up")
+    (tmp_path / "impact.toml").write_text(text.replace("wires = { count = 2 }", ""), "utf-8")
+    found = measure(tmp_path / "impact.toml")
+    assert found.surface is not None
+    assert found.summary["tilt_rad"] == pytest.approx(np.radians(-2.0), abs=1e-4)
+    assert found.surface.sizes["point"] == 0
+    surface = found.surface.where(found.surface["time"] >= 0.0, drop=True)
+    true = PULSE.surface()
+    x_boundary = np.interp(surface["time"], true["time"], true["x_boundary"])
+    # the corner's row is known to a pixel or two, which the tilt turns into 0.07 px along the sample
+    assert rms((surface["x_boundary"].values - x_boundary)[2:]) < 0.1 * PIXEL
+    for row in range(2, surface.sizes["time"], 5):
+        here, now = surface.isel(time=row), true.interp(time=surface["time"][row])
+        error = here["u_y"].values - np.interp(here["x"], now["x"], now["u_y"])
+        assert rms(error) < 0.1 * PIXEL
+
+
 def test_an_interrupted_measurement_goes_on_and_ends_the_same(
     filmed: Path, measured: ww.Measurement, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

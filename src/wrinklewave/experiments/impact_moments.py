@@ -56,7 +56,8 @@ class EndTrack:
 
     Attributes:
         time: [s].
-        column, sigma: of the struck end, and its standard uncertainty; NaN where not seen.
+        column, sigma: of the struck end at the surface, and its standard uncertainty; NaN where not seen.
+        row: of the surface there, to a pixel or so.
         striker, striker_sigma: the striker's face; NaN where there is none in sight.
         touching: 1 where the striker touches, 0 where it does not, NaN where it is out of sight.
         rest: column of the struck end at rest.
@@ -65,6 +66,7 @@ class EndTrack:
     time: Floats
     column: Floats
     sigma: Floats
+    row: Floats
     striker: Floats
     striker_sigma: Floats
     touching: Floats

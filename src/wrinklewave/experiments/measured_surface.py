@@ -76,6 +76,7 @@ def end_track(series: FrameSeries, time: Floats, n_undeformed: int, appearance: 
         time=time,
         column=column,
         sigma=np.hypot(end["sigma"], slope_sigma[:, 0] * up),
+        row=end["corner_row"],
         striker=end["striker"],
         striker_sigma=end["striker_sigma"],
         touching=end["contact"],
@@ -140,7 +141,7 @@ def write_surface(
     tracks = track_wires(series.sightings, wires) if wires else None
     places = tracks.column if tracks else np.zeros((time.size, 0))
     X = np.zeros(0) if wires is None else pixels.to_metres(wires.columns, _rows_at_rest(wires, pixels))[0]
-    x_boundary = pixels.to_metres(track.column, pixels.origin[1])[0]
+    x_boundary = pixels.to_metres(track.column, track.row)[0]
     left = _bridged_in_time(track.column)
     with SurfaceFile(path, time=time, x=grid.x, X=X, attrs=attrs) as file:
         file.write("x_boundary", x_boundary)

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 LOCKED = 0.02
 """Pixels of pixel locking that are worth a warning."""
+OFTEN_LOST = 0.05
+"""Share of frames without the struck end that is worth a warning."""
 FAINT = 5.0
 """Contrast-to-noise ratio below which edges are lost."""
 NAMED_FRAMES = 5
@@ -123,6 +125,11 @@ def _warnings(
         found.append(
             f"Pixel locking of {locking:.3f} px: the profile of the edge is not that of a blurred step "
             "(too sharp for the pixels, compressed, or sharpened by the camera)."
+        )
+    if summary["struck_end_seen_share"] < 1.0 - OFTEN_LOST:
+        found.append(
+            f"The struck end is seen in {summary['struck_end_seen_share']:.0%} of the frames only: it must be in "
+            "sight, and the striker must not be as bright as the sample."
         )
     if ratio < FAINT:
         found.append(f"The contrast at the surface is only {ratio:.1f} times the noise.")

@@ -43,7 +43,7 @@ def curvature_figure(inputs: FigureInputs) -> Figure:
     strains.plot(time, straight, "--", color=COLOURS[1], label="from the end's motion")
     strains.plot(time, straight - pulse.arc_strain, color="0.65", lw=1.0, label="difference")
     strains.set(xlabel="time (ms)", ylabel="strain", xlim=(time[0], time[-1]))
-    strains.legend(loc="upper left")
+    strains.legend(loc=(0.6, 0.22))
     for axes, letter in ((profiles, "A"), (strains, "B")):
         panel_letter(axes, letter)
     return drawing

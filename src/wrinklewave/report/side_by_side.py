@@ -63,6 +63,7 @@ def present_comparison(comparison: Comparison, folder: Path) -> Path:
 def comparison_page(comparison: Comparison, figures: dict[str, Path]) -> str:
     """The comparison as one HTML page; ``figures`` are PNG files by name."""
     names = list(comparison.motions)
+    kinds = [motion.subject.kind for motion in comparison.motions.values()]
     context = ReportContext(
         title=" · ".join(names),
         description=f"{names[0]} is the one that the others are held against.",
@@ -76,7 +77,9 @@ def comparison_page(comparison: Comparison, figures: dict[str, Path]) -> str:
         .render(
             context=context,
             headline=(),
-            figures=[picture(name, COMPARISON_FIGURES[name], file) for name, file in figures.items()],
+            figures=[
+                picture(name, COMPARISON_FIGURES[name].of(kinds), file) for name, file in figures.items()
+            ],
             names=names,
             rows=table_rows(comparison.quantities),
         )

@@ -28,6 +28,7 @@ DIFFERENCE_MARGINS = Margins(right=0.95, top=0.4, between_columns=0.7, between_r
 @comparison_figure(
     "side_2c_displacement",
     number="2A to 2C",
+    of_tests="S1",
     caption="Out-of-plane displacement of the surface, wrinkles included, over the maximum of the first surface "
     "motion (scale cut at -0.25). Dashed red: struck end; white: wavefront, free line (dashed) and line through "
     "the origin (dotted); dash-dotted: paths of material points.",

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -27,22 +27,32 @@ class ComparisonFigure:
         number: of the paper's figures that it is arranged like, such as "2A-C"; empty if there is none.
         caption: what it shows.
         draw: makes it.
+        of_tests: the number where all of the surface motions were measured, if it is another.
     """
 
     name: str
     number: str
     caption: str
     draw: Draw
+    of_tests: str | None = None
+
+    def of(self, kinds: Iterable[str]) -> ComparisonFigure:
+        """The figure as it is numbered for surface motions of these kinds, "simulation" or "measurement"."""
+        if self.of_tests is None or set(kinds) != {"measurement"}:
+            return self
+        return replace(self, number=self.of_tests)
 
 
 COMPARISON_FIGURES: dict[str, ComparisonFigure] = {}
 
 
-def comparison_figure(name: str, *, number: str, caption: str) -> Callable[[Draw], Draw]:
+def comparison_figure(
+    name: str, *, number: str, caption: str, of_tests: str | None = None
+) -> Callable[[Draw], Draw]:
     """Register a function that draws a figure of a comparison."""
 
     def register(draw: Draw) -> Draw:
-        COMPARISON_FIGURES[name] = ComparisonFigure(name, number, caption, draw)
+        COMPARISON_FIGURES[name] = ComparisonFigure(name, number, caption, draw, of_tests)
         return draw
 
     return register
