@@ -15,8 +15,6 @@ UNITS = (  # ending of a name, unit to show, factor from SI
     ("pixel_size_m", "µm", 1e6),
     ("_m", "mm", 1e3),
 )
-ROUNDING = 1e-15
-"""Below this a number is what rounding has left of zero."""
 SHARES = ("_share", "_share_max", "_share_end", "_imbalance_max")
 
 
@@ -47,7 +45,7 @@ def number(value: float | None) -> str:
     """Four significant digits, all digits of a whole number, a dash for None."""
     if value is None:
         return "–"
-    return str(value) if isinstance(value, int) else f"{value if abs(value) > ROUNDING else 0.0:.4g}"
+    return str(value) if isinstance(value, int) else f"{value:.4g}"
 
 
 def _digits(value: float | None, factor: float) -> str:
