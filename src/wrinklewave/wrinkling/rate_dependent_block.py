@@ -11,7 +11,7 @@ is exact where stress and strain do not vary over the depth.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -50,6 +50,9 @@ from wrinklewave.wrinkling.rate_dependent_march import (
     expected_film_strain,
     meet_film,
 )
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 CELLS = 96
 """Along the block, for the motion along the surface and for the wrinkles on it."""
@@ -149,7 +152,7 @@ def wrinkles_on_block(
     instants, bilayer, lengths = prepared(
         time, at_cells, film, substrate, wavelengths, seed, reserve=STRAIN_RESERVE
     )
-    reach = float(lengths.max()) if lengths.size == 1 else float(np.median(lengths))
+    reach = float(np.median(lengths))
     elements = replace(elements, shortening=_means(centres, reach) @ elements.shortening)
     bearing = Bearing(
         motion=block_motion(elements, substrate, step=bilayer.step),
@@ -175,7 +178,7 @@ def cell_centres(block: Block) -> Array:
     return (np.arange(CELLS) + 0.5) * block.length / CELLS
 
 
-def _means(centres: Array, reach: float):  # type: ignore[no-untyped-def]
+def _means(centres: Array, reach: float) -> csr_array:
     """Means over the cells within ``reach`` [m] on either side, by a Hann window, sparse, shape [n_cells, n_cells].
 
     The window is folded back at the ends, so that the matrix is symmetric and even forces stay even.
