@@ -74,6 +74,34 @@ def test_a_series_by_itself_and_from_python(experiment: Path) -> None:
     assert found.series[0].surface.attrs["procedure"] == "quasi-static"
 
 
+def test_a_wrong_scale_is_noticed(experiment: Path) -> None:
+    file, scale = experiment.with_name("first.experiment.toml"), "calibration.pixel_size=50.5 um"
+    (warning,) = ww.measure_quasi_static(file, overrides=[scale]).warnings
+    assert "50.9 mm long, not 50.4 mm (+1.0%)" in warning
+    assert "sample-length" in warning
+
+
+def test_a_plate_that_touches_is_not_the_sample(tmp_path: Path) -> None:
+    """Real tests have a plate at the end that moves."""
+    from wrinklewave.imaging.camera import Camera, Striker, film
+    from wrinklewave.imaging.writing import write_recording
+
+    surface = SlowCompression(strains=STRAINS[::3], margins=MARGINS).surface()
+    camera = Camera.framing(surface, scale=20e3).at_contrast_to_noise(20.0)
+    plate = Striker(velocity=1.0, stop_distance=1.0, height=2e-3)  # faster than the images: always in contact
+    write_recording(
+        film(surface, camera, striker=plate, times=surface["time"].values), tmp_path / "plate.tif"
+    )
+    (tmp_path / "plate.toml").write_text(
+        '[experiment]\nkind = "quasi-static"\nname = "between plates"\n[video]\nfile = "plate.tif"\n'
+        '[calibration]\nkind = "sample-length"\nx_axis = "right"\ny_axis = "up"\n[sample]\nlength = "50.4 mm"\n'
+        + CHANGES
+    )
+    summary = ww.measure_quasi_static(tmp_path / "plate.toml").summary
+    assert summary["critical_strain"] == pytest.approx(0.043, rel=0.02)
+    assert summary["critical_wavelength_m"] == pytest.approx(2e-3, rel=0.005)
+
+
 def test_mistakes(experiment: Path) -> None:
     with pytest.raises(InputError, match="images that can be read") as raised:
         ww.measure_quasi_static(

@@ -23,8 +23,6 @@ Scalars = Iterator[tuple[str, float]]
 ALL_STRAINS = (-1.0, 1.0)
 DRIFT_SIGMAS, NOTICEABLE_DRIFT = 3.0, 0.01
 """A change of the material wavelength over the test that is significant, and worth a warning."""
-LENGTH_TOLERANCE = 0.01
-"""Relative difference between the arc of the undeformed images and the sample's length that nobody should overlook."""
 
 
 @dataclass(frozen=True)
@@ -193,12 +191,6 @@ def _repetition_scalars(first: TestSeries, second: TestSeries, found: Repetition
 
 def _warnings(test: TestSeries) -> Iterator[str]:
     series, fit = test.series, test.fit
-    off = series.undeformed_arc / series.length - 1.0
-    if abs(off) > LENGTH_TOLERANCE:
-        yield (
-            f"{series.name}: the undeformed surface is {1e3 * series.undeformed_arc:.4g} mm long, sample.length is "
-            f"{1e3 * series.length:.4g} mm ({off:+.1%}): check the calibration and which images are undeformed."
-        )
     if fit is None:
         yield (
             f"{series.name}: no more than three images show wrinkles of {1e6 * series.threshold:.0f} um that grow: "
