@@ -313,3 +313,19 @@ def test_filter_treats_every_row_alike() -> None:
     together = low_pass(rows, spacing=1e-4, cutoff_wavelength=2e-3)
     alone = [low_pass(row, spacing=1e-4, cutoff_wavelength=2e-3) for row in rows]
     np.testing.assert_allclose(together, alone, rtol=1e-12)
+
+
+def test_a_bridged_gap_does_not_pass_for_a_wrinkle() -> None:
+    """A bump where the surface is hardly known, long before the wrinkles come, as where a wire hides it."""
+    surface = TravellingPulse().surface()
+    rows, columns = slice(20, 22), slice(500, 520)
+    surface["u_y"].values[rows, columns] += 80e-6
+    surface["y"].values[rows, columns] += 80e-6
+    sigma = np.full(surface["u_y"].shape, 3e-6)
+    sigma[:, columns] = 50e-6
+    believed = analyse(surface, SETTINGS).wrinkles.front
+    surface["u_y_sigma"] = (("time", "x"), sigma, {"units": "m"})
+    doubted = analyse(surface, SETTINGS).wrinkles.front
+    true = analyse(TravellingPulse().surface(), SETTINGS).wrinkles.front
+    assert abs(believed.speed / true.speed - 1) > 0.02
+    assert doubted.speed == pytest.approx(true.speed, rel=0.005)

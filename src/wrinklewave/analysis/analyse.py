@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from wrinklewave.analysis.boundary import boundary_spectrum, contact_time, moved, separation_time, stop_time
 from wrinklewave.analysis.filters import low_pass
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 
 NOTICEABLE_RATE = 3.0
 """Strain rate [1/s] by which fronts of little strain are seen: a hundredth of what the paper's map shows."""
+CERTAIN_SHARE = 0.25
+"""Standard uncertainty of the surface, over the wrinkle threshold, up to which wrinkles are said to have arrived."""
+SPOILT_WAVELENGTHS = 0.2
+"""Distance over the filter's cut-off to which an uncertain place spoils the envelope: half a wrinkle."""
 SMALLEST_STRAIN = 0.002
 """Strains below it give no momentary modulus: noise would be divided by noise."""
 
@@ -90,9 +95,13 @@ def analyse_wrinkles(subject: Subject, settings: Settings, pulse: Pulse, start: 
     """Wrinkles apart from the pulse: amplitude, wavelength, where and how fast they form."""
     height = subject.u_y - pulse.displacement
     envelope = amplitude_envelope(height)
-    arrivals = arrival_times(subject.time, envelope, settings.wrinkle_threshold)
-    at_points = laboratory_to_material(envelope, subject.x, subject.x_p)
-    point_arrivals = arrival_times(subject.time, at_points, settings.wrinkle_threshold)
+    certain, arrivals_of = envelope, arrival_times
+    if subject.u_y_sigma is not None:
+        certain = np.where(_too_uncertain(subject.u_y_sigma, subject.pixel, settings), np.nan, envelope)
+        arrivals_of = _seen_arrivals
+    arrivals = arrivals_of(subject.time, certain, settings.wrinkle_threshold)
+    at_points = laboratory_to_material(certain, subject.x, subject.x_p)
+    point_arrivals = arrivals_of(subject.time, at_points, settings.wrinkle_threshold)
     return Wrinkles(
         height=height,
         envelope=envelope,
@@ -148,6 +157,29 @@ def expect_quasi_static(subject: Subject, boundary: Boundary, pulse: Pulse) -> Q
         amplitude_at_rest=float(wrinkle_amplitude(at_rest, **film)),
         wavelength_at_rest=float(wrinkle_wavelength(at_rest, **film)),
     )
+
+
+def _too_uncertain(sigma: Array, pixel: float, settings: Settings) -> NDArray[np.bool_]:
+    """Where noise could pass for wrinkles, shape [n_times, n_x]: in and beside gaps that were bridged.
+
+    Args:
+        sigma: standard uncertainty of the surface [m], same shape.
+        pixel: spacing of the laboratory grid [m].
+        settings: of the analysis.
+    """
+    from scipy.ndimage import maximum_filter1d
+
+    reach = int(np.ceil(SPOILT_WAVELENGTHS * settings.filter_wavelength / pixel))
+    uncertain = np.nan_to_num(sigma) > CERTAIN_SHARE * settings.wrinkle_threshold
+    return np.asarray(maximum_filter1d(uncertain, 2 * reach + 1, axis=1))
+
+
+def _seen_arrivals(time: ArrayLike, field: ArrayLike, threshold: ArrayLike) -> Array:
+    """Arrivals that happen between two neighbouring times at which the field is known, shape [n_positions]."""
+    arrivals, times = arrival_times(time, field, threshold), np.asarray(time, dtype=float)
+    before = np.searchsorted(times, np.nan_to_num(arrivals, nan=times[-1])) - 1
+    known = np.isfinite(np.asarray(field, dtype=float)[np.maximum(before, 0), np.arange(arrivals.size)])
+    return np.where(known, arrivals, np.nan)
 
 
 def _onset(subject: Subject, arrivals: Array, *, margin: float) -> Onset:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SOURCE = "surface motion"
-OPTIONAL_VARIABLES = ("strain_xx", "strain_rate_xx", "stress_xx")
+OPTIONAL_VARIABLES = ("strain_xx", "strain_rate_xx", "stress_xx", "u_y_sigma")
 OPTIONAL_ATTRIBUTES = ("critical_strain", "critical_wavelength", "plane_strain_modulus", "stop_distance")
 
 
@@ -60,6 +60,7 @@ class Subject:
     strain_xx: Array | None
     strain_rate_xx: Array | None
     stress_xx: Array | None
+    u_y_sigma: Array | None
     length: float
     critical_strain: float | None
     critical_wavelength: float | None
