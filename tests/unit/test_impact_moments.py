@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wrinklewave.experiments.impact_moments import EndTrack, find_moments
+from wrinklewave.experiments.impact_moments import EndTrack, find_moments, with_grazing_uncertainty
 
 RATE = 50e3
 CONTACT, STOP, REST, SPEED = 0.404e-3, 1.034e-3, 40.0, 2e5  # s, s, px, px/s
@@ -42,6 +42,14 @@ def test_moments_between_frames_are_found_to_a_small_part_of_the_frame_interval(
     # between frames the plate is taken to move evenly, which a sudden stop does not
     assert abs(found.stop.time - (CONTACT + 0.99 * WAY / SPEED)) < found.stop.sigma < 0.3 / RATE
     assert found.separation.time == pytest.approx(STOP, abs=0.1 / RATE)
+
+
+def test_frames_with_a_gap_too_narrow_to_be_seen_say_that_they_are_uncertain() -> None:
+    track = impact()
+    touching = track.touching.copy()
+    touching[int(STOP * RATE) + 1] = 1.0  # the gap has opened, but is not seen yet
+    sigma = with_grazing_uncertainty(replace(track, touching=touching), find_moments(track)).sigma
+    assert np.flatnonzero(sigma > 0.2).tolist() == [21, int(STOP * RATE), int(STOP * RATE) + 1]
 
 
 def test_a_given_contact_is_kept() -> None:

@@ -116,6 +116,13 @@ def test_the_struck_end_the_wires_and_the_moments_come_back(filmed: Path, measur
     assert np.isfinite(wires).all()
     assert rms(wires) < 0.05
     np.testing.assert_allclose(surface["X"].values, [5e-3, 10e-3], atol=0.05 * PIXEL)
+    assert measured.folder is not None
+    tracks = np.genfromtxt(measured.folder / "tracks.csv", delimiter=",", names=True)
+    striker = tracks["x_striker_m"] / PIXEL - (truth["striker_column"].values - origin)
+    assert rms(striker[~grazing]) < 0.06
+    assert rms(striker[~grazing] * PIXEL / tracks["x_striker_sigma_m"][~grazing]) < 1.5
+    assert tracks["x_boundary_sigma_m"][grazing].item() > 0.25 * PIXEL
+    np.testing.assert_allclose(tracks["x_wire_2_m"], surface["x_p"].values[:, 1], atol=1e-3 * PIXEL)
     summary = measured.summary
     assert summary["contact_on_recording_clock_s"] == pytest.approx(12 / 50e3, abs=1e-6)
     assert summary["striker_velocity_m_per_s"] == pytest.approx(10.0, rel=2e-3)
@@ -202,6 +209,7 @@ def test_an_interrupted_measurement_goes_on_and_ends_the_same(
         "experiment.toml",
         "summary.json",
         "surface.nc",
+        "tracks.csv",
     ]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,10 @@ AT_REST = 1.0
 """Pixels within which a striker is at rest."""
 NEARLY = 0.99
 """Share of its way after which a striker counts as stopped: the last part of a gradual stop has no sharp end."""
+
+
+GRAZING = 0.3
+"""Pixels by which struck end and striker may be off while the gap between them is too narrow to be seen."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +92,21 @@ def find_moments(track: EndTrack, contact: float | None = None) -> Impact:
         separation = _gap_zero(track, after, (stop - 1, stop))
     halt, distance = _stop(track, touch)
     return Impact(touch, halt, separation, distance)
+
+
+def with_grazing_uncertainty(track: EndTrack, impact: Impact) -> EndTrack:
+    """The same with the uncertainty of frames in which the gap is about to close, or has just opened.
+
+    A gap narrower than the blur looks like a single edge in another place: no frame by itself can tell them apart.
+    """
+    interval = float(np.median(np.diff(track.time)))
+    near = np.zeros(track.time.size, bool)
+    for moment in (impact.contact, impact.separation):
+        near |= np.abs(track.time - moment.time) < interval
+    extra = np.where(near & (track.touching == 1.0), GRAZING, 0.0)
+    return replace(
+        track, sigma=np.hypot(track.sigma, extra), striker_sigma=np.hypot(track.striker_sigma, extra)
+    )
 
 
 def _contact_frames(track: EndTrack) -> tuple[int | None, int | None]:

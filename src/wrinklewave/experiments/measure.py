@@ -19,9 +19,15 @@ from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.environment import processor
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.frame_blocks import BlockStore, FrameBlock, block_bounds, measure_block
-from wrinklewave.experiments.impact_moments import find_moments
+from wrinklewave.experiments.impact_moments import find_moments, with_grazing_uncertainty
 from wrinklewave.experiments.interruption import Outcome, interruptible
-from wrinklewave.experiments.measured_surface import end_track, frame_series, laboratory_grid, write_surface
+from wrinklewave.experiments.measured_surface import (
+    end_track,
+    frame_series,
+    laboratory_grid,
+    track_columns,
+    write_surface,
+)
 from wrinklewave.experiments.measurement_folder import MeasurementFolder
 from wrinklewave.experiments.measurement_summary import measurement_summary, surface_attributes
 from wrinklewave.imaging.appearance import Appearance, learn_appearance
@@ -226,6 +232,7 @@ def _evaluate(
             expected="an impact within the frames used",
             cure='give it, as in time = "1.2 ms" on the recording\'s clock, or check video.frames',
         )
+    track = with_grazing_uncertainty(track, impact)
     tracks = write_surface(
         folder.surface,
         blocks=blocks(),
@@ -237,6 +244,7 @@ def _evaluate(
         grid=laboratory_grid(appearance, pixels, measurer.finder.resolution),
         attrs=surface_attributes(experiment, appearance, pixels, impact),
     )
+    folder.write_tracks(track_columns(clock - impact.contact.time, track, tracks, pixels))
     surface = _analysed_part(folder.surface)
     experiment = _with_times(experiment, surface)
     analysis = analyse(surface, experiment.analysis)

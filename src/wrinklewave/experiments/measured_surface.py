@@ -154,6 +154,27 @@ def write_surface(
     return tracks
 
 
+def track_columns(
+    time: Floats, track: EndTrack, wires: WireTracks | None, pixels: PixelMap
+) -> dict[str, Floats]:
+    """Struck end, striker and wires in every frame with their standard uncertainties, as columns of a table."""
+    pixel = pixels.pixel_size
+    columns = {
+        "time_s": time,
+        "x_boundary_m": pixels.to_metres(track.column, track.row)[0],
+        "x_boundary_sigma_m": pixel * track.sigma,
+        "x_striker_m": pixels.to_metres(track.striker, track.row)[0],
+        "x_striker_sigma_m": pixel * track.striker_sigma,
+        "striker_touches": track.touching,
+    }
+    if wires is not None:
+        x = pixels.to_metres(wires.column, pixels.origin[1])[0]
+        for wire in range(x.shape[1]):
+            columns[f"x_wire_{wire + 1}_m"] = x[:, wire]
+            columns[f"x_wire_{wire + 1}_sigma_m"] = pixel * wires.sigma[:, wire]
+    return columns
+
+
 def _numbered(blocks: Iterable[FrameBlock]) -> Iterator[tuple[int, FrameBlock]]:
     """Blocks with the number of frames before each."""
     first = 0

@@ -12,7 +12,9 @@ from wrinklewave.experiments.frame_blocks import BlockStore
 from wrinklewave.experiments.run_folder import claim_folder, write_history, write_json, write_text
 
 if TYPE_CHECKING:
+    import numpy as np
     import xarray as xr
+    from numpy.typing import NDArray
 
     from wrinklewave.config.experiment import Experiment
 
@@ -55,8 +57,12 @@ class MeasurementFolder:
         """Scalar results."""
         write_json(self.path / "summary.json", summary)
 
+    def write_tracks(self, columns: dict[str, NDArray[np.float64]]) -> None:
+        """Struck end, striker and wires in every frame."""
+        write_history(self.path / "tracks.csv", columns)
+
     def write_finished(self, surface: xr.Dataset, summary: dict[str, Any]) -> None:
-        """What comes with the surface motion; then what only a restart needs goes."""
+        """What comes with the surface motion."""
         if surface["x_boundary"].notnull().sum() > 1:
             write_history(self.path / "boundary.csv", boundary_columns(surface))
         self.write_summary(summary)
