@@ -28,6 +28,13 @@ def environment() -> dict[str, str]:
     return os.environ | {"PYTHONPATH": path}
 
 
+def run_elsewhere(module: str, device: str, file: Path, choices: dict[str, str] | None = None) -> None:
+    """Run a module in a process of its own, which simulates a GPU if it is asked for one and there is none."""
+    simulated = SIMULATED if device == "cuda" and isinstance(gpus(), str) else {}
+    command = [sys.executable, "-m", module, device, str(file)]
+    subprocess.run(command, env=environment() | simulated | (choices or {}), check=True)
+
+
 def can_compile() -> bool:
     """Whether numba can compile for a GPU, be there one or not; asked elsewhere, to leave this process alone."""
     command = [
@@ -45,9 +52,7 @@ def runs(tmp_path_factory) -> dict[str, Runs]:
     found = {}
     for device in ("cpu", "cuda"):
         file = tmp_path_factory.mktemp("runs") / f"{device}.npz"
-        simulated = SIMULATED if device == "cuda" and isinstance(gpus(), str) else {}
-        command = [sys.executable, "-m", "support.backend_runs", device, str(file)]
-        subprocess.run(command, env=environment() | simulated, check=True)
+        run_elsewhere("support.backend_runs", device, file)
         with np.load(file) as data:
             found[device] = dict(data)
     return found
@@ -76,6 +81,20 @@ def test_histories_agree(runs, name):
     for key in set(cpu) - set(STATE) - set(EXACT):
         scale = energy if key.endswith("_J_per_m") else np.abs(cpu[key]).max()
         assert np.abs(cuda[key] - cpu[key]).max() <= AGREEMENT * scale, key
+
+
+def test_a_new_law_needs_no_line_for_a_device(runs, tmp_path):
+    found = {}
+    for device in ("cpu", "cuda"):
+        file = tmp_path / f"{device}.npz"
+        run_elsewhere("support.new_law", device, file, {"NUMBA_CACHE_DIR": str(tmp_path / "kernels")})
+        with np.load(file) as data:
+            found[device] = dict(data)
+    for key in STATE:
+        scale = np.abs(found["cpu"][key]).max()
+        assert np.abs(found["cuda"][key] - found["cpu"][key]).max() <= AGREEMENT * scale, key
+    known = of(runs["cpu"], "struck")["u"]
+    assert np.abs(found["cpu"]["u"] - known).max() > 1e-3 * np.abs(known).max()  # it is another solid
 
 
 def test_kernels_compile_for_a_gpu(tmp_path):
