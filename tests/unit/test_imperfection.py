@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wrinklewave.config.imperfections import (
@@ -38,6 +38,7 @@ def test_sinusoidal_imperfection_is_highest_at_the_struck_end() -> None:
     np.testing.assert_allclose(imperfection_height(SINUSOIDAL, X), [30e-6, 0, -30e-6, 30e-6], atol=1e-18)
 
 
+@settings(max_examples=10)
 @given(st.integers(0, 2**63 - 1))
 def test_random_imperfection_has_the_mean_square_of_a_sinusoid_of_its_amplitude(seed: int) -> None:
     """Over 41 m, a thousand times the distance over which neighbouring cosines get out of step."""
