@@ -123,8 +123,16 @@ def test_summary_table_prints_chosen_results() -> None:
 
     console = Console(width=80, record=True, file=io.StringIO())
     console.print(
-        summary_table({"wavefront_speed_m_per_s": 60.0}, ["wavefront_speed_m_per_s", "separation_time_s"])
+        summary_table(
+            {
+                "wavefront_speed_m_per_s": 60.0,
+                "wavefront_speed_sigma_m_per_s": 0.51234,
+                "wrinkle_amplitude_max_m": 2e-4,
+            },
+            ["wavefront_speed_m_per_s", "separation_time_s", "wrinkle_amplitude_max_m"],
+        )
     )
     text = console.export_text()
-    assert "60 m/s" in text
+    assert "60 ± 0.51 m/s" in text
+    assert "0.2 mm" in text
     assert "separation" not in text  # what a run cannot tell is left out

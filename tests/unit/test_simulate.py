@@ -261,3 +261,28 @@ def test_collapsing_elements_stop_the_run_and_keep_what_was_computed(tmp_path):
     summary = json.loads((tmp_path / "summary.json").read_text())
     assert summary["outcome"] == "failed"
     assert (tmp_path / "history.csv").stat().st_size > 200
+
+
+def test_an_interrupt_while_the_report_is_written_costs_no_step(case, run, tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from wrinklewave.cli import application
+    from wrinklewave.report import run as report_of_run
+
+    def interrupted(*arguments):
+        raise KeyboardInterrupt
+
+    file, folder = tmp_path / "case.toml", tmp_path / "run"
+    file.write_text(case.to_toml())
+    with monkeypatch.context() as patch:
+        patch.setattr(report_of_run, "present", interrupted)
+        stopped = CliRunner().invoke(application(), ["simulate", str(file), "--out", str(folder)])
+    assert stopped.exit_code == 130
+    assert "wrinklewave restart" in stopped.output
+    steps = []
+    monkeypatch.setattr(cpu, "advance", lambda n, *rest: steps.append(n))
+    assert CliRunner().invoke(application(), ["restart", str(folder)]).exit_code == 0
+    assert sum(steps) == 0
+    assert results(folder) == results(run.folder)
+    assert (folder / "report.html").exists()
+    assert not (folder / "checkpoint.h5").exists()

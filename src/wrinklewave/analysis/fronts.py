@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike
 from wrinklewave.laboratory_frame import Array
 
 FEWEST_POSITIONS = 3
+CERTAIN = 0.25
+"""Share of a speed below which its standard uncertainty must be for its line to mean something."""
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,16 @@ class SpeedFit:
     positions: Array
     times: Array
     residual_rms: float
+
+    @property
+    def is_line(self) -> bool:
+        """Whether the free line says how fast a front travels, and not that none does."""
+        return self.speed_sigma < CERTAIN * abs(self.speed)
+
+    @property
+    def is_line_through_origin(self) -> bool:
+        """The same of the line through the origin."""
+        return self.origin_speed_sigma < CERTAIN * abs(self.origin_speed)
 
 
 def arrival_times(time: ArrayLike, field: ArrayLike, threshold: ArrayLike) -> Array:

@@ -117,3 +117,8 @@ def _largest(values: Array) -> float:
 def _median(values: Array) -> float:
     values = values[np.isfinite(values)]
     return float(np.median(values)) if values.size else float("nan")
+
+
+def sigma_name(name: str) -> str:
+    """``wavefront_speed_m_per_s`` has its standard uncertainty in ``wavefront_speed_sigma_m_per_s``."""
+    return name.removesuffix("_m_per_s") + "_sigma_m_per_s"

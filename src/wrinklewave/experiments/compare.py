@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from wrinklewave.analysis.analyse import analyse
 from wrinklewave.analysis.subject import Subject, subject_of
+from wrinklewave.analysis.summary import sigma_name
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.common_grid import (
     CommonGrid,
@@ -226,7 +227,7 @@ def _quantities(motions: Mapping[str, ComparedMotion], contacts: tuple[float, ..
         values = [summary.get(name) for summary in summaries]
         if "_sigma_" in name or name == "contact_time_s" or sum(value is not None for value in values) < 2:
             continue
-        rows.append(_quantity(name, values, [summary.get(_sigma_of(name)) for summary in summaries]))
+        rows.append(_quantity(name, values, [summary.get(sigma_name(name)) for summary in summaries]))
     return tuple(rows)
 
 
@@ -258,11 +259,6 @@ def _quantity(name: str, values: list[float | None], sigmas: list[float | None])
         None if name in NO_RATIO or not reference or value is None else value / reference for value in values
     ]
     return Quantity(name, tuple(values), tuple(sigmas), tuple(ratios))
-
-
-def _sigma_of(name: str) -> str:
-    """``wavefront_speed_m_per_s`` has its uncertainty in ``wavefront_speed_sigma_m_per_s``."""
-    return name.removesuffix("_m_per_s") + "_sigma_m_per_s"
 
 
 def _check_window(grid: CommonGrid, settings: Settings) -> None:

@@ -74,11 +74,14 @@ class RunFolder:
         return "no checkpoint had been written yet (solver.checkpoint_interval)"
 
     def require_fields(self) -> None:
-        """See that the fields before the checkpoint are there.
+        """See that the fields before the checkpoint are there; those of a run that was all but closed get theirs back.
 
         Raises:
             InputError: if they are not.
         """
+        finished = self.path / "fields.vtkhdf"
+        if not self.fields.exists() and finished.exists():
+            finished.replace(self.fields)
         if not self.fields.exists():
             raise InputError(
                 "is missing beside its checkpoint", file=self.fields, cure="start again without --resume"
@@ -90,15 +93,18 @@ class RunFolder:
         write_json(self.path / "summary.json", run.summary)
 
     def write_finished(self, run: Run) -> None:
-        """Everything but figures and report; then what only a restart needs goes."""
+        """Everything but figures, report and the name of the fields."""
         assert run.surface is not None  # a finished run has one
         surface.write(run.surface, self.path / "surface.nc")
         write_history(self.path / "boundary.csv", boundary_columns(run.surface))
         if run.case.output.probes:
             write_history(self.path / "probes.csv", probe_columns(run.surface, run.case.output.probes))
+        self.write_unfinished(run)
+
+    def close(self, run: Run) -> None:
+        """All is written: the fields get their name, and what only a restart needs goes."""
         assert run.fields.file is not None  # a run with a folder writes to it
         run.fields.file.rename(self.path / "fields.vtkhdf")
-        self.write_unfinished(run)
         self.checkpoint.unlink(missing_ok=True)
 
     def _clear(self) -> None:

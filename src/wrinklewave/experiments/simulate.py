@@ -114,6 +114,7 @@ def simulate(
     overrides: Sequence[str] = (),
     resume: bool = False,
     overwrite: bool = False,
+    keep_checkpoint: bool = False,
     progress: Callable[[Progress], None] = lambda state: None,
 ) -> Run:
     """Simulate a case and analyse its surface motion.
@@ -126,6 +127,7 @@ def simulate(
         overrides: ``"key=value"`` on top of the case file.
         resume: go on from the checkpoint in ``out``, if there is one.
         overwrite: replace an earlier run in ``out``.
+        keep_checkpoint: also of a finished run, until its report is written and :meth:`RunFolder.close` is called.
         progress: called now and then.
 
     Raises:
@@ -159,6 +161,8 @@ def simulate(
     run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin)
     if folder:
         folder.write_finished(run) if run.surface is not None else folder.write_unfinished(run)
+        if run.surface is not None and not keep_checkpoint:
+            folder.close(run)
     return run
 
 
@@ -217,18 +221,24 @@ def _run(
 ) -> Outcome:
     begin = saved = time.perf_counter()
     clock = Clock(simulation)
+
+    def save() -> None:
+        if folder:
+            recording.flush()
+            write_checkpoint(folder.checkpoint, simulation, recording.surface.to_record(), case.to_toml())
+
     with interruptible() as wished, recording:
         for event in simulation.run():
             recording.take(event.time, simulation)
             now = time.perf_counter()
             progress(_progress(simulation, now - begin, clock.seconds_left()))
-            due = now - saved > case.solver.checkpoint_interval or wished()
-            if folder and due:
-                recording.flush()
-                write_checkpoint(folder.checkpoint, simulation, recording.surface.to_record(), case.to_toml())
-                saved = now
             if wished():
+                save()
                 return Outcome.INTERRUPTED
+            if now - saved > case.solver.checkpoint_interval:
+                save()
+                saved = now
+        save()  # so that an interrupt while results are written costs none of the steps
     return Outcome.FINISHED
 
 

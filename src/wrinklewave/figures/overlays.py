@@ -35,7 +35,7 @@ def draw_speed(
 ) -> None:
     """Free line (dashed) of a fitted front and, with ``origin``, its line through the origin (dotted)."""
     x = inputs.subject.x
-    if np.isfinite(fit.speed):
+    if fit.is_line:
         axes.plot(
             MILLI * x,
             MILLI * (fit.intercept + x / fit.speed),
@@ -44,7 +44,7 @@ def draw_speed(
             path_effects=outlined(),
             label=f"{name}: {fit.speed:.0f} m/s",
         )
-    if origin and np.isfinite(fit.origin_speed):
+    if origin and fit.is_line_through_origin:
         axes.plot(
             MILLI * x,
             MILLI * (fit.start + x / fit.origin_speed),

@@ -41,6 +41,12 @@ def shown(name: str, value: float | None) -> Shown:
     return Shown(_words(name), number(value), "")
 
 
+def with_sigma(name: str, value: float | None, sigma: float | None) -> str:
+    """Digits of a result and of its standard uncertainty, if there is one."""
+    text = shown(name, value).value
+    return text if sigma is None else f"{text} ± {float(shown(name, sigma).value):.2g}"
+
+
 def number(value: float | None) -> str:
     """Four significant digits, all digits of a whole number, a dash for None."""
     if value is None:

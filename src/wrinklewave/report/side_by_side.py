@@ -12,7 +12,7 @@ from wrinklewave.environment import versions
 from wrinklewave.experiments.compare import Comparison, Quantity
 from wrinklewave.experiments.run_folder import write_json, write_text
 from wrinklewave.figures.side_by_side import COMPARISON_FIGURES, write_comparison_figures
-from wrinklewave.report.formats import shown
+from wrinklewave.report.formats import shown, with_sigma
 from wrinklewave.report.page import ReportContext, environment, picture
 
 if TYPE_CHECKING:
@@ -117,15 +117,9 @@ def _cell(quantity: Quantity, index: int) -> Cell:
     value, sigma = quantity.values[index], quantity.sigmas[index]
     if value is None:
         return Cell("–", "")
-    text = shown(quantity.name, value).value
-    if sigma is not None:
-        text += f" ± {_two_digits(quantity.name, sigma)}"
+    text = with_sigma(quantity.name, value, sigma)
     ratio = quantity.ratios[index]
     return Cell(text, "" if ratio is None or index == 0 else f"ratio {ratio:.4f}")
-
-
-def _two_digits(name: str, sigma: float) -> str:
-    return f"{float(shown(name, sigma).value):.2g}"
 
 
 def _what_was_done(comparison: Comparison) -> str:

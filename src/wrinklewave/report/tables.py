@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from wrinklewave.analysis.summary import sigma_name
 from wrinklewave.experiments.paper_table import NO_NUMBER, NOT_REPRODUCED, REPRODUCED, Row
-from wrinklewave.report.formats import number, shown
+from wrinklewave.report.formats import number, shown, with_sigma
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -67,7 +68,8 @@ def summary_table(summary: Mapping[str, float | None], names: Sequence[str]) -> 
 
     table = Table(show_header=False, box=None)
     for name in (name for name in names if summary.get(name) is not None):
-        label, value, unit = shown(name, summary[name])
+        label, _, unit = shown(name, summary[name])
+        value = with_sigma(name, summary[name], summary.get(sigma_name(name)))
         table.add_row(label, f"{value} {unit}".strip())
     return table
 

@@ -83,13 +83,22 @@ def run_and_present(
     from wrinklewave.experiments.bulk_choices import other_bulk_choices
     from wrinklewave.experiments.interruption import Outcome
     from wrinklewave.experiments.paper_statements import BULK_CHOICES
+    from wrinklewave.experiments.run_folder import RunFolder
     from wrinklewave.experiments.simulate import simulate as run_case
     from wrinklewave.report import comparison_table
     from wrinklewave.report.run import compare_with_paper, present
 
     out = console()
     with shown_progress(case.name, COMPILING) as progress:
-        run = run_case(case, out=folder, **where, resume=resume, overwrite=overwrite, progress=progress)
+        run = run_case(
+            case,
+            out=folder,
+            **where,
+            resume=resume,
+            overwrite=overwrite,
+            keep_checkpoint=True,
+            progress=progress,
+        )
     if run.outcome is not Outcome.FINISHED:
         raise _interrupted(f"at {1e3 * run.summary['simulated_time_s']:g} ms", folder)
     summaries: dict[str, dict[str, Any]] = {case.substrate.bulk_response: run.summary}
@@ -99,7 +108,11 @@ def run_and_present(
                 run, **where, resume=resume, progress=lambda choice, state: progress(state)
             )
     rows = compare_with_paper(run, summaries)
-    present(run, rows)
+    try:
+        present(run, rows)
+    except KeyboardInterrupt as interrupt:
+        raise _interrupted("while the report was written", folder) from interrupt
+    RunFolder(folder).close(run)
     if all_bulk:
         out.print(comparison_table(rows))
     _describe(run)
