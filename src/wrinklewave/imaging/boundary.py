@@ -137,14 +137,16 @@ def _faces(body: Floats, sigma: float, rough: float, view: _View) -> _Faces:
     """Struck end and striker in the strip of the body, whose columns have the noise ``sigma``."""
     reach = _REACH * view.blur
     face = _rough_face(body, rough, view.striker)
-    if not face > view.clearance:
+    # a blurred end passes through the striker's grey by itself: what stands left of it must be like a plate too
+    plate = _level_left(body, face - reach) if face > view.clearance else 0.0
+    if not (face > view.clearance and abs(plate - view.striker) < abs(plate)):
         end, end_sigma = _step(body, rough, view.blur, sigma)
         return _Faces(end, end_sigma, np.nan, np.nan, np.nan)
     if rough - face > 2.0 * reach + 2 * _LEVEL_COLUMNS:
         end, end_sigma = _step(body, rough, view.blur, sigma)
         front, front_sigma = _step(body, face, view.blur, sigma)
         return _Faces(end, end_sigma, front, front_sigma, 0.0)
-    plate, sample = _level_left(body, face - reach), _level_right(body, rough + reach)
+    sample = _level_right(body, rough + reach)
     first, window = _window(body, face, rough, view.blur)
     heights = np.array([-plate, sample])
     touching = fit_steps(window, first, np.array([rough]), np.array([sample - plate]), plate, view.blur)
