@@ -299,3 +299,17 @@ def test_blocks_are_stored_as_they_are(filmed: Path, tmp_path: Path) -> None:
     assert 7 in store
     for field in fields(FrameBlock):
         np.testing.assert_array_equal(getattr(store.get(7), field.name), getattr(block, field.name))
+
+
+def test_a_blurred_end_is_no_striker(tmp_path: Path) -> None:
+    """At 3 px of blur the end itself passes through the striker's grey over a few columns."""
+    camera = Camera.framing(PULSE.surface(), scale=1 / PIXEL, blur=3.0).at_contrast_to_noise(20.0)
+    striker = Striker(velocity=10.0, stop_distance=1.5e-3)
+    recording = film(PULSE.surface(), camera, striker=striker, frames_before=18)
+    write_recording(recording, tmp_path / "blurred.tif")
+    text = EXPERIMENT.format(file="blurred.tif", x_axis="right", y_axis="up").replace(
+        "wires = { count = 2 }\n", ""
+    )
+    (tmp_path / "blurred.toml").write_text(text, "utf-8")
+    summary = measure(tmp_path / "blurred.toml", threads=1).summary
+    assert summary["contact_on_recording_clock_s"] == pytest.approx(18 / 50e3, abs=10e-6)  # half a frame
