@@ -21,6 +21,7 @@ from wrinklewave.imaging.strips import Greys, strip_shares
 _STRIPS = 4  # depths
 _FACE_ROWS = 64  # of all strips together
 _RUN = 3  # columns unlike the sample that end it
+_END_BLURS = 2.0  # left of the end, over which it passes through the striker's grey by itself
 _REACH = 4.0  # blurs that a step reaches to either side
 _MARGIN = 4  # columns more that are fitted
 _LEVEL_COLUMNS = 10  # columns that tell the level beside a step
@@ -136,17 +137,15 @@ def _rough_end(body: Floats, view: _View) -> float:
 def _faces(body: Floats, sigma: float, rough: float, view: _View) -> _Faces:
     """Struck end and striker in the strip of the body, whose columns have the noise ``sigma``."""
     reach = _REACH * view.blur
-    face = _rough_face(body, rough, view.striker)
-    # a blurred end passes through the striker's grey by itself: what stands left of it must be like a plate too
-    plate = _level_left(body, face - reach) if face > view.clearance else 0.0
-    if not (face > view.clearance and abs(plate - view.striker) < abs(plate)):
+    face = _rough_face(body, rough - _END_BLURS * view.blur, view.striker)
+    if not face > view.clearance:
         end, end_sigma = _step(body, rough, view.blur, sigma)
         return _Faces(end, end_sigma, np.nan, np.nan, np.nan)
     if rough - face > 2.0 * reach + 2 * _LEVEL_COLUMNS:
         end, end_sigma = _step(body, rough, view.blur, sigma)
         front, front_sigma = _step(body, face, view.blur, sigma)
         return _Faces(end, end_sigma, front, front_sigma, 0.0)
-    sample = _level_right(body, rough + reach)
+    plate, sample = _level_left(body, face - reach), _level_right(body, rough + reach)
     first, window = _window(body, face, rough, view.blur)
     heights = np.array([-plate, sample])
     touching = fit_steps(window, first, np.array([rough]), np.array([sample - plate]), plate, view.blur)
@@ -242,7 +241,7 @@ def _level_right(body: Floats, column: float) -> float:
 
 @allocating
 def _rough_face(body: Floats, end: float, striker: float) -> float:
-    """Column of the striker's face, seen from the struck end to the left; NaN if it is out of sight."""
+    """Column of the striker's face, seen from ``end`` to the left; NaN if it is out of sight."""
     if not np.isfinite(striker):
         return np.nan
     left = body[: max(int(end), 0)]
