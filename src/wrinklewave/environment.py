@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 REQUIRED = (
     *("numpy", "scipy", "numba", "xarray", "h5netcdf", "h5py", "pydantic", "pint"),
-    *("typer", "rich", "matplotlib", "jinja2", "tifffile"),
+    *("typer", "rich", "matplotlib", "jinja2", "tifffile", "threadpoolctl"),
 )
 OPTIONAL = {
     "video": ("av", "cine-handler"),

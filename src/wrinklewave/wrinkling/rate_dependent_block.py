@@ -10,8 +10,10 @@ is exact where stress and strain do not vary over the depth.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from functools import wraps
+from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -54,6 +56,9 @@ from wrinklewave.wrinkling.rate_dependent_march import (
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
+P = ParamSpec("P")
+R = TypeVar("R")
+
 CELLS = 96
 """Along the block, for the motion along the surface and for the wrinkles on it."""
 STRAIN_RESERVE = 0.1
@@ -70,6 +75,20 @@ class Block:
     length: float
     depth: float
     film_end: float
+
+
+def one_blas_thread(function: Callable[P, R]) -> Callable[P, R]:
+    """Matrices of a hundred rows: threads of BLAS make them two to four times slower."""
+
+    @wraps(function)
+    def alone(*args: P.args, **kwargs: P.kwargs) -> R:
+        import scipy.linalg  # noqa: F401  # brings a BLAS of its own, which must be there to be told
+        from threadpoolctl import threadpool_limits
+
+        with threadpool_limits(1, user_api="blas"):
+            return function(*args, **kwargs)
+
+    return alone
 
 
 class BlockWrinkles(NamedTuple):
@@ -106,6 +125,7 @@ class BlockState:
     touching: NDArray[np.bool_]
 
 
+@one_blas_thread
 def wrinkles_on_block(
     time: ArrayLike,
     X: ArrayLike,
