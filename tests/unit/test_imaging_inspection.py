@@ -52,6 +52,13 @@ def test_a_depth_that_is_not_used() -> None:
     assert "video.bit_depth = 10" in message
 
 
+def test_values_beyond_the_depth() -> None:
+    values = np.random.default_rng(0).integers(1, 4000, 10_000).astype(np.uint16)
+    values[3] = 1 << 15
+    (message,) = _warnings(_source(values, bit_depth=12))
+    assert "32768 does not fit in 12 bits" in message
+
+
 def test_values_shifted_to_the_upper_bits() -> None:
     values = (np.random.default_rng(0).integers(1, 4000, 1000) << 4).astype(np.uint16)
     (message,) = _warnings(_source(values))

@@ -105,6 +105,7 @@ def test_an_empty_report_has_no_empty_sections(tmp_path: Path) -> None:
         ("element_updates_per_s", 4.2e7, ("element updates", "42", "million/s")),
         ("hourglass_energy_share_max", 0.004, ("hourglass energy share max", "0.4", "%")),
         ("separation_time_s", None, ("separation time", "–", "ms")),
+        ("pixel_size_m", 50e-6, ("pixel size", "50", "µm")),
     ],
 )
 def test_results_get_words_and_handy_units(

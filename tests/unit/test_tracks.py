@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,7 @@ def test_short_gaps_are_bridged_and_long_ones_reported() -> None:
 
     tracks = track_wires([seen(frame) for frame in range(N_FRAMES)], LOOK)
     assert tracks.gaps == (Gap(0, *short, True), Gap(1, *long, False), Gap(2, N_FRAMES - 2, N_FRAMES, False))
+    assert json.dumps([vars(gap) for gap in tracks.gaps])  # summary.json lists them
     np.testing.assert_allclose(
         tracks.column[slice(*short), 0], [places(f)[0] for f in range(*short)], atol=1e-6
     )

@@ -59,7 +59,7 @@ def check_cutoff(cutoff_wavelength: float, spacing: float) -> None:
             f"the filter's cut-off of {1e3 * cutoff_wavelength:g} mm is {samples:.4g} samples of the grid",
             key="analysis.filter_wavelength",
             expected=f"more than 2 and at most {MAX_CUTOFF_IN_SAMPLES} samples of {1e3 * spacing:g} mm",
-            cure="change the cut-off, or the grid (output.pixel_size of a simulation)",
+            cure="change the cut-off, or the grid (output.pixel_size of a simulation, calibration of a measurement)",
         )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from wrinklewave import surface as surfaces
 from wrinklewave.analysis.analyse import analyse
+from wrinklewave.analysis.filters import check_cutoff
 from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.environment import processor
 from wrinklewave.errors import InputError
@@ -29,7 +30,11 @@ from wrinklewave.experiments.measured_surface import (
     write_surface,
 )
 from wrinklewave.experiments.measurement_folder import MeasurementFolder
-from wrinklewave.experiments.measurement_summary import measurement_summary, surface_attributes
+from wrinklewave.experiments.measurement_summary import (
+    measurement_summary,
+    scale_warnings,
+    surface_attributes,
+)
 from wrinklewave.imaging.appearance import Appearance, learn_appearance
 from wrinklewave.imaging.calibration import PixelMap, calibrate
 from wrinklewave.imaging.edges.locking import PixelLocking
@@ -148,6 +153,8 @@ def measure(
         open_experiment(experiment) as source,
         measurement_folder(experiment, out, resume, overwrite) as folder,
     ):
+        if experiment.calibration.kind != "sample-length":  # better now than after all frames
+            check_cutoff(experiment.analysis.filter_wavelength, experiment.calibration.pixel_size)
         appearance, wires = learn(experiment, source)
         store = folder.blocks(_origin(experiment, source))
         measurer = FrameMeasurer(appearance, wires=wires, resolution=experiment.edge.resolution)
@@ -252,6 +259,9 @@ def _evaluate(
         source, appearance, pixels, series, track, impact, tracks, surface, analysis
     )
     warnings += grey_warnings(source, histogram(source))
+    warnings += scale_warnings(
+        experiment, pixels.pixel_size * (appearance.held_end - track.rest) / np.cos(pixels.tilt)
+    )
     return Measurement(
         experiment,
         Outcome.FINISHED,

@@ -18,7 +18,7 @@ from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.measure import MeasuringProgress, learn, measure_frames, measurement_folder
 from wrinklewave.experiments.measured_surface import end_track, frame_series, laboratory_grid, write_surface
 from wrinklewave.experiments.measurement_folder import MeasurementFolder
-from wrinklewave.experiments.measurement_summary import surface_attributes
+from wrinklewave.experiments.measurement_summary import scale_warnings, surface_attributes
 from wrinklewave.experiments.quasi_static_test import (
     ALL_STRAINS,
     QuasiStaticTest,
@@ -35,8 +35,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 FEWEST_IMAGES = 4
-SCALE_TOLERANCE = 0.005
-"""Relative difference between the length that is seen and the one that is given that nobody should overlook."""
 
 
 @dataclass(frozen=True)
@@ -179,20 +177,9 @@ def _measured(
         warnings = (
             *source.notes,
             *grey_warnings(source, histogram(source)),
-            *_scale_warnings(experiment, seen),
+            *scale_warnings(experiment, seen),
         )
         return MeasuredSeries(experiment, surfaces.read(path), frames.frame, pixels, warnings)
-
-
-def _scale_warnings(experiment: Experiment, seen: float) -> Iterator[str]:
-    """Whether the undeformed sample is as long in the images, ``seen`` [m], as it is said to be."""
-    off = seen / experiment.sample.length - 1.0
-    if np.isfinite(off) and abs(off) > SCALE_TOLERANCE:
-        yield (
-            f"{experiment.video.file.name}: in the undeformed images the sample is {1e3 * seen:.4g} mm long, not "
-            f"{1e3 * experiment.sample.length:.4g} mm ({off:+.1%}). Strains and lengths are off by as much if the "
-            'scale is wrong: calibration.kind = "sample-length" takes it from the sample.'
-        )
 
 
 def _blocks(store: BlockStore, n_blocks: int) -> Iterator[FrameBlock]:

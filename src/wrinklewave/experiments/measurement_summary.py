@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +29,8 @@ OFTEN_LOST = 0.05
 FAINT = 5.0
 """Contrast-to-noise ratio below which edges are lost."""
 NAMED_FRAMES = 5
+SCALE_TOLERANCE = 0.005
+"""Relative difference between the length that is seen and the one that is given that nobody should overlook."""
 
 
 def surface_attributes(
@@ -146,6 +149,17 @@ def _warnings(
             "surface.nc holds all."
         )
     return found
+
+
+def scale_warnings(experiment: Experiment, seen: float) -> Iterator[str]:
+    """Whether the undeformed sample is as long in the images, ``seen`` [m], as it is said to be."""
+    off = seen / experiment.sample.length - 1.0
+    if np.isfinite(off) and abs(off) > SCALE_TOLERANCE:
+        yield (
+            f"{experiment.video.file.name}: in the undeformed images the sample is {1e3 * seen:.4g} mm long, not "
+            f"{1e3 * experiment.sample.length:.4g} mm ({off:+.1%}). Strains and lengths are off by as much if the "
+            'scale is wrong: calibration.kind = "sample-length" takes it from the sample.'
+        )
 
 
 def _velocity(track: EndTrack, impact: Impact) -> float:

@@ -60,7 +60,9 @@ def _spread(source: FrameSource) -> Sequence[tuple[int, Image]]:
 def _caption(source: FrameSource, index: int) -> str:
     if source.times is None or source.clock != "camera":
         return f"frame {index}"
-    return f"frame {index}, {source.times[index] * 1e3:.4g} ms"
+    interval = float(np.diff(source.times).min(initial=1e-3, where=np.diff(source.times) > 0)) * 1e3
+    decimals = max(0, 1 - math.floor(math.log10(interval)))  # neighbouring frames differ
+    return f"frame {index}, {source.times[index] * 1e3:.{decimals}f} ms"
 
 
 def _limits(grey: Histogram) -> tuple[int, int]:

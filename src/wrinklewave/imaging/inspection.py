@@ -66,6 +66,8 @@ def histogram(source: FrameSource, sampled_frames: int = SAMPLED_FRAMES) -> Hist
 
 def grey_warnings(source: FrameSource, grey: Histogram) -> Iterator[str]:
     """Sentences about clipping and about a bit depth that does not fit the grey values."""
+    if grey.brightest >> source.bit_depth:
+        yield f"a grey value of {grey.brightest} does not fit in {source.bit_depth} bits: is the file damaged?"
     if grey.white_share > CLIPPED_SHARE:
         yield f"{grey.white_share:.2%} of the pixels are clipped at white ({grey.white_level}): expose less"
     if grey.black_share > CLIPPED_SHARE:
@@ -112,7 +114,8 @@ def suggested_experiment(source: FrameSource, folder: Path) -> str:
     if source.clock == "camera" and source.frame_rate:
         rate = f'# frame_rate = "{source.frame_rate:.9g} Hz"   # leave out: the recording has its own times'
     else:
-        rate = '# frame_rate = "50 kHz"   # GIVE the camera\'s: the file only knows how fast to play it'
+        why = "the file only knows how fast to play it" if source.frame_rate else "it is not in the file"
+        rate = f'# frame_rate = "50 kHz"   # GIVE the camera\'s: {why}'
     undeformed = max(1, min(10, source.n_frames // 4))
     return TEMPLATE.format(name=source.path.stem, file=file, frame_rate=rate, undeformed=undeformed)
 

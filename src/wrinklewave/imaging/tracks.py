@@ -134,7 +134,7 @@ def _bridged(column: Floats, sigma: Floats) -> WireTracks:
         known = np.flatnonzero(np.isfinite(column[:, wire]))
         for first, stop in _gaps(known, column.shape[0]):
             inside = known.size > 1 and first > known[0] and stop <= known[-1]
-            bridge = inside and stop - first <= BRIDGED_FRAMES
+            bridge = bool(inside and stop - first <= BRIDGED_FRAMES)  # one that JSON knows
             if bridge:
                 frames = np.arange(first, stop)
                 column[first:stop, wire] = PchipInterpolator(known, column[known, wire])(frames)

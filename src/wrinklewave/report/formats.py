@@ -12,7 +12,6 @@ UNITS = (  # ending of a name, unit to show, factor from SI
     ("_hz", "Hz", 1.0),
     ("_px", "px", 1.0),
     ("_rad", "mrad", 1e3),
-    ("pixel_size_m", "µm", 1e6),
     ("_m", "mm", 1e3),
 )
 SHARES = ("_share", "_share_max", "_share_end", "_imbalance_max")
@@ -32,6 +31,8 @@ def shown(name: str, value: float | None) -> Shown:
         return Shown(_words(name), _digits(value, 1e2), "%")
     if name.endswith("_updates_per_s"):
         return Shown(_words(name.removesuffix("_per_s")), _digits(value, 1e-6), "million/s")
+    if name.endswith("pixel_size_m"):
+        return Shown(_words(name.removesuffix("_m")), _digits(value, 1e6), "µm")
     for ending, unit, factor in UNITS:
         if name.endswith(ending):
             return Shown(_words(name.removesuffix(ending)), _digits(value, factor), unit)

@@ -97,8 +97,13 @@ def _detection(source: FrameSource, surface: xr.Dataset, pixels: PixelMap, row: 
     index = int(np.abs(source.times - clock).argmin())
     return Detection(
         image=source.frame(index),
-        caption=f"frame {index}, {1e3 * float(here['time']):.3g} ms after contact",
+        caption=f"frame {index}, {_moment(float(here['time']))}",
         surface=np.array(pixels.to_pixels(here["x"].values, here["y"].values)),
         struck_end=float(pixels.to_pixels(here["x_boundary"].values, pixels.height)[0]),
         wires=np.array(pixels.to_pixels(here["x_p"].values, here["y_p"].values)),
     )
+
+
+def _moment(time: float) -> str:
+    """A time [s] on the clock that starts with contact, in words."""
+    return f"{1e3 * abs(time):.3g} ms {'before' if time < 0 else 'after'} contact"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from wrinklewave.figures.side_by_side.inputs import ComparedInputs
 from wrinklewave.figures.side_by_side.registry import comparison_figure
@@ -49,6 +50,12 @@ def amplitude_and_wavelength(inputs: ComparedInputs) -> Figure:
                 axes.plot(common, ratio.values, style, color=colour, label=label)
     panels[0, 0].set_ylabel("amplitude (µm)")
     panels[0, 1].set_ylabel("wavelength (mm)")
+    drawn = MILLI * np.concatenate(
+        [_drawn(motion.analysis.wrinkles.spectra.peak) for motion in inputs.motions.values()]
+    )
+    if drawn.size:
+        spare = 0.05 * float(np.ptp(drawn)) or 0.1
+        panels[0, 1].set_ylim(drawn.min() - spare, drawn.max() + spare)
     panels[0, 0].legend(loc="lower right")
     for axes in panels[1]:
         low, high = axes.get_ylim()
@@ -94,3 +101,9 @@ def wavelength_maps(inputs: ComparedInputs) -> Figure:
         axes.set_ylim(MILLI * SHORTEST * scale, MILLI * LONGEST * scale)
         axes.set_title(name, loc="left", fontweight="bold")
     return drawing
+
+
+def _drawn(values: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Values of a curve that have a known neighbour: a single one draws no line and sets no range."""
+    known = np.pad(np.isfinite(values), 1)
+    return values[known[1:-1] & (known[:-2] | known[2:])]

@@ -46,7 +46,7 @@ class FolderSource(FrameSource):
     def _read(self, index: int) -> Image:
         image, _, _ = _read_image(self.files[index], index)
         if image.shape != self.shape or image.dtype != self.dtype:
-            found, wanted = f"{image.shape[::-1]} {image.dtype}", f"{self.shape[::-1]} {self.dtype}"
+            found, wanted = _kind(image.shape, image.dtype), _kind(self.shape, self.dtype)
             reason = f"{self.files[index].name} is {found}, not {wanted}"
             raise FrameError(index, reason, source=self.path)
         return image
@@ -68,6 +68,10 @@ def natural_order(name: str) -> list[Any]:
     """Sorting key in which frame_9 comes before frame_10."""
     parts = re.split(r"(\d+)", name.casefold())
     return [int(part) if part.isdigit() else part for part in parts]
+
+
+def _kind(shape: tuple[int, ...], dtype: np.dtype) -> str:
+    return f"{shape[1]} x {shape[0]} pixels of {8 * dtype.itemsize} bit"
 
 
 def _missing_numbers(files: list[Path]) -> str | None:

@@ -145,7 +145,7 @@ def _open(path: Path) -> tuple[av.container.InputContainer, Any]:
         raise _no_recording(path, error.strerror or str(error)) from error
     if container.format.name not in CONTAINERS:
         container.close()
-        raise _no_recording(path, f"it looks like {container.format.long_name}")
+        raise _no_recording(path, f"its format is {container.format.long_name}")
     streams = container.streams.video
     if not streams or not streams[0].codec_context or streams[0].codec_context.format is None:
         container.close()
