@@ -239,10 +239,20 @@ def test_the_command_writes_a_report_with_the_edge_on_frames(filmed: Path, tmp_p
     assert again.sample.length == pytest.approx(16e-3)
 
 
+def not_so_far(state: MeasuringProgress) -> None:
+    raise AssertionError("frames were measured first")
+
+
 def test_what_cannot_be_measured_is_refused(filmed: Path, tmp_path: Path) -> None:
     at_rest = load_experiment(filmed / "impact.toml", ["video.frames=[0, 11]", "video.undeformed_frames=4"])
     with pytest.raises(InputError, match="no contact is seen"):
         measure(at_rest)
+    for mistake, message in (
+        ("contact.time=90 ms", "90 ms is not within"),
+        ("calibration.pixel_size=5 mm", "cut-off"),
+    ):
+        with pytest.raises(InputError, match=message):
+            measure(filmed / "impact.toml", overrides=[mistake], progress=not_so_far)
     slow = at_rest.experiment.model_copy(update={"kind": "quasi-static"})
     with pytest.raises(InputError, match=r"experiment\.kind"):
         measure(at_rest.model_copy(update={"experiment": slow}))

@@ -153,8 +153,7 @@ def measure(
         open_experiment(experiment) as source,
         measurement_folder(experiment, out, resume, overwrite) as folder,
     ):
-        if experiment.calibration.kind != "sample-length":  # better now than after all frames
-            check_cutoff(experiment.analysis.filter_wavelength, experiment.calibration.pixel_size)
+        _check_early(experiment, source)
         appearance, wires = learn(experiment, source)
         store = folder.blocks(_origin(experiment, source))
         measurer = FrameMeasurer(appearance, wires=wires, resolution=experiment.edge.resolution)
@@ -168,6 +167,22 @@ def measure(
         folder.write_finished(found.surface, found.summary)
         store.remove()
     return found
+
+
+def _check_early(experiment: Experiment, source: PreparedSource) -> None:
+    """What would stop the evaluation of all frames is better said before they are measured."""
+    if experiment.calibration.kind != "sample-length":
+        check_cutoff(experiment.analysis.filter_wavelength, experiment.calibration.pixel_size)
+    contact = experiment.contact.time
+    assert source.times is not None  # impacts have a clock
+    first, last = source.times[0], source.times[-1]
+    if contact is not None and not first < contact < last:
+        raise InputError(
+            f"{1e3 * contact:g} ms is not within the frames used",
+            key="contact.time",
+            expected=f"after {1e3 * first:.6g} ms and before {1e3 * last:.6g} ms, on the recording's clock",
+            cure='correct it, or have it found: time = "detect"',
+        )
 
 
 def learn(experiment: Experiment, source: PreparedSource) -> tuple[Appearance, WireLook | None]:
