@@ -46,7 +46,7 @@ class Problem:
         rows, columns = self.model.mesh.shape
         return a._replace(
             shares=np.linspace(0, rows, threads + 1).astype(np.int64),
-            forces=np.zeros((threads, 3, 8, columns + 2)),
+            forces=np.zeros((threads, 3, 8, columns + 2), a.u.dtype),
             meetings=np.zeros(threads * LINE, dtype=np.int64),
         )
 
@@ -73,10 +73,10 @@ def shape(n_elements: int) -> tuple[int, int]:
     return columns, round(n_elements / columns)
 
 
-def problem(n_elements: int) -> Problem:
+def problem(n_elements: int, precision: str = "double") -> Problem:
     """About ``n_elements`` elements, every one of them deformed (seeded random displacements)."""
     columns, rows = shape(n_elements)
-    case = load_case(PAPER_CASE, [f"mesh.elements=[{columns}, {rows}]"])
+    case = load_case(PAPER_CASE, [f"mesh.elements=[{columns}, {rows}]", f"solver.precision={precision}"])
     model = build_model(case)
     motion = np.array([[0.0, 1.0, 0.0, PLATE_SPEED, PLATE_SPEED, PLATE_SPEED]])
     boundary = model.boundary._replace(motion=motion)

@@ -7,8 +7,11 @@ Three things decide whether LLVM turns a loop over elements into vector instruct
 
 from __future__ import annotations
 
+import ast
 import hashlib
+import inspect
 import os
+import textwrap
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -16,6 +19,7 @@ from typing import Any
 
 import llvmlite.binding as llvm
 import numba
+import numpy as np
 from numba.core import cpu
 from numba.core.options import TargetOptions
 
@@ -72,12 +76,58 @@ def choose_cache(function: Callable[..., Any]) -> None:
         numba.config.CACHE_DIR = _kernel_cache(function.__module__.split(".")[1])
 
 
+_OPTIONS: dict[Any, dict[str, Any]] = {}
+"""Of every kernel."""
+
+
 def _compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     def compile_lazily(function: Callable[..., Any]) -> Any:
         choose_cache(function)
-        return numba.njit(**options)(function)
+        kernel = numba.njit(**options)(function)
+        _OPTIONS[kernel] = options
+        return kernel
 
     return compile_lazily
+
+
+@cache
+def in_single_precision(kernel: Any) -> Any:
+    """The same kernel with its constants, and those of all kernels that it calls, in single precision.
+
+    A constant of double precision widens all that it meets; so a kernel on arrays of single precision would else
+    compute in double. There is one source of formulas: its constants are replaced before it is compiled.
+    """
+    function = getattr(kernel, "py_func", kernel)
+    tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    definition = tree.body[0]
+    assert isinstance(definition, ast.FunctionDef)
+    definition.decorator_list, definition.name = [], f"{function.__name__}_in_single_precision"
+    constants = _NamedConstants()
+    narrow = ast.increment_lineno(constants.visit(tree), function.__code__.co_firstlineno - 1)
+    used = {name: value for name, value in function.__globals__.items() if name in function.__code__.co_names}
+    names = function.__globals__ | {name: _narrowed(value) for name, value in used.items()} | constants.values
+    exec(compile(ast.fix_missing_locations(narrow), function.__code__.co_filename, "exec"), names)
+    return _compiler(**_OPTIONS[kernel])(names[definition.name])
+
+
+def _narrowed(value: Any) -> Any:
+    if isinstance(value, float):
+        return np.float32(value)
+    return in_single_precision(value) if callable(value) and value in _OPTIONS else value
+
+
+class _NamedConstants(ast.NodeTransformer):
+    """Gives every floating-point constant a name, and keeps their values in single precision."""
+
+    def __init__(self) -> None:
+        self.values: dict[str, np.float32] = {}
+
+    def visit_Constant(self, node: ast.Constant) -> ast.expr:
+        if not isinstance(node.value, float):
+            return node
+        name = f"_constant_{len(self.values)}"
+        self.values[name] = np.float32(node.value)
+        return ast.Name(name, ast.Load())
 
 
 scalar = _compiler(**_FAST, forceinline=True)

@@ -32,7 +32,7 @@ PUSH = cubic_segments(KNOTS, lambda t: 3e3 * t**2, lambda t: 6e3 * t)
 SHEAR = cubic_segments(KNOTS, lambda t: 1e3 * t**2, lambda t: 2e3 * t)
 
 
-def struck() -> Model:
+def struck(precision: str = "double") -> Model:
     """A plate with friction strikes the upper half of a block, which stands on a wall."""
     return build(
         distorted(6, 4),
@@ -45,7 +45,13 @@ def struck() -> Model:
         friction=0.05,
         motion=cubic_segments(KNOTS, lambda t: 10.0 * t, lambda t: 10.0 + 0.0 * t),
         bulk_viscosity=(0.06, 1.2),
+        precision=precision,
     )
+
+
+def mixed() -> Model:
+    """As :func:`struck`, with state and elements in single precision."""
+    return struck("mixed")
 
 
 GROOVE = np.array(
@@ -103,7 +109,7 @@ def compressed() -> Model:
 
 
 MODELS: dict[str, Callable[[], Model]] = {
-    f.__name__: f for f in (struck, grooved, bilayer, sheared, compressed)
+    f.__name__: f for f in (struck, mixed, grooved, bilayer, sheared, compressed)
 }
 
 

@@ -51,6 +51,7 @@ def build(
     hourglass: float = 1.0,
     bulk_viscosity: tuple[float, float] = (0.0, 0.0),
     threads: int = 1,
+    precision: str = "double",
 ) -> Model:
     """A model of one material; free edges and no bulk viscosity unless asked for."""
     boundary = Boundary(
@@ -73,6 +74,7 @@ def build(
         hourglass=hourglass,
         bulk_viscosity=bulk_viscosity,
         threads=threads,
+        precision=precision,
     )
 
 

@@ -17,6 +17,8 @@ TESTS = Path(__file__).parents[1]
 SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
 AGREEMENT = 1e-11
 """Relative to the largest value: rounding, in another order on each device, grown over a hundred steps at most."""
+MIXED_AGREEMENT = 2e-5
+"""The same, of single precision."""
 STATE = ("u", "w", "vx", "vy", "memory", "fields", "totals")
 EXACT = ("step", "time_s")
 
@@ -62,6 +64,10 @@ def of(runs: Runs, name: str) -> Runs:
     return {key.partition("/")[2]: values for key, values in runs.items() if key.startswith(name + "/")}
 
 
+def agreement(name: str) -> float:
+    return MIXED_AGREEMENT if name == "mixed" else AGREEMENT
+
+
 @pytest.mark.parametrize("name", MODELS)
 def test_devices_agree(runs, name):
     cpu, cuda = of(runs["cpu"], name), of(runs["cuda"], name)
@@ -71,7 +77,7 @@ def test_devices_agree(runs, name):
     for key in STATE:
         scale = np.abs(cpu[key]).max()
         assert scale > 0
-        assert np.abs(cuda[key] - cpu[key]).max() <= AGREEMENT * scale, key
+        assert np.abs(cuda[key] - cpu[key]).max() <= agreement(name) * scale, key
 
 
 @pytest.mark.parametrize("name", [*MODELS, "from_case"])
@@ -80,7 +86,7 @@ def test_histories_agree(runs, name):
     energy = max(cpu[key].max() for key in cpu if key.endswith("_J_per_m"))
     for key in set(cpu) - set(STATE) - set(EXACT):
         scale = energy if key.endswith("_J_per_m") else np.abs(cpu[key]).max()
-        assert np.abs(cuda[key] - cpu[key]).max() <= AGREEMENT * scale, key
+        assert np.abs(cuda[key] - cpu[key]).max() <= agreement(name) * scale, key
 
 
 def test_a_new_law_needs_no_line_for_a_device(runs, tmp_path):

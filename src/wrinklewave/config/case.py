@@ -106,6 +106,10 @@ class Solver(Section):
     mass_scaling: Annotated[float, Field(ge=1, description="factor on the mass, quasi-static runs only")] = (
         1.0
     )
+    precision: Annotated[
+        Literal["double", "mixed"],
+        Field(description="mixed: state and elements in single precision, edges and energies in double"),
+    ] = "double"
 
 
 class Output(Section):

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
 
 EDGES = {"free": FREE, "fixed": FIXED, "roller": ROLLER}
 TRANSVERSE = {"free": LEFT_MOVED, "held": LEFT_HELD, "linear": LEFT_STRAIGHT}
+NUMBERS = {"double": np.float64, "mixed": np.float32}
+"""Of the state and of the elements' and nodes' arithmetic; edges, energies and time are double always."""
 AT_REST = np.array([[0.0, 1.0, 0.0, 0.0, 0.0, 0.0]])
 
 
@@ -97,6 +99,7 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
         bulk_viscosity=case.solver.bulk_viscosity,
         mass_scaling=case.solver.mass_scaling,
         threads=threads,
+        precision=case.solver.precision,
     )
 
 
@@ -155,8 +158,10 @@ def assemble(
     bulk_viscosity: tuple[float, float] = (0.06, 1.2),
     mass_scaling: float = 1.0,
     threads: int = 1,
+    precision: str = "double",
 ) -> Model:
     """A model at rest from its parts; one material per layer of the mesh."""
+    number = NUMBERS[precision]
     density = np.array([m.density * mass_scaling for m in materials])
     terms = _prony_terms(materials)
     bulk_relaxes = bool(np.any(terms[:, :, 1] > 0))
@@ -167,26 +172,27 @@ def assemble(
     parts = min(threads, rows)
     nodes = mesh.X.shape
     arrays = Arrays(
-        X=np.ascontiguousarray(mesh.X),
-        Y=np.ascontiguousarray(mesh.Y),
-        u=np.zeros(nodes),
-        w=np.zeros(nodes),
-        vx=np.zeros(nodes),
-        vy=np.zeros(nodes),
-        inverse_mass=1.0 / lumped_mass(mesh, density),
+        X=np.ascontiguousarray(mesh.X, number),
+        Y=np.ascontiguousarray(mesh.Y, number),
+        u=np.zeros(nodes, number),
+        w=np.zeros(nodes, number),
+        vx=np.zeros(nodes, number),
+        vy=np.zeros(nodes, number),
+        inverse_mass=(1.0 / lumped_mass(mesh, density)).astype(number),
         runs=runs,
         first_run=first_run,
         moduli=np.array(
-            [_moduli(m, rho, bulk_viscosity, hourglass) for m, rho in zip(materials, density, strict=True)]
+            [_moduli(m, rho, bulk_viscosity, hourglass) for m, rho in zip(materials, density, strict=True)],
+            number,
         ),
         terms=terms,
-        factors=np.ones((len(materials), n_terms, 5)),
+        factors=np.ones((len(materials), n_terms, 5), number),
         shares=np.linspace(0, rows, parts + 1).astype(np.int64),
-        forces=np.zeros((parts, 3, 8, columns + 2)),
-        nothing=np.zeros((8, columns + 2)),
+        forces=np.zeros((parts, 3, 8, columns + 2), number),
+        nothing=np.zeros((8, columns + 2), number),
         meetings=np.zeros(parts * LINE, dtype=np.int64),
     )
-    memory = np.zeros((n_terms * components, rows, columns))
+    memory = np.zeros((n_terms * components, rows, columns), number)
     return Model(mesh, materials, arrays, memory, (0.0,) * n_terms, boundary, density)
 
 

@@ -11,9 +11,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numba import types
 from numba.extending import overload
 
-from wrinklewave._jit import serial, strict
+from wrinklewave._jit import in_single_precision, serial, strict
 from wrinklewave.dynamics.barrier import ABANDONED, wait_for_all
 from wrinklewave.dynamics.boundary import (
     FORCE,
@@ -80,22 +81,44 @@ def update_factors(terms, dt_last, dt, factors):
 
 
 def element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of part of a row of whichever element this memory belongs to; chosen when the kernel is compiled."""
-    row = _row_of(len(memory), len(terms))
+    """Forces of part of a row of whichever element and precision this state belongs to; chosen when compiled."""
+    row = _element_row_of(len(memory), len(terms), u.dtype == np.float32)
     row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
 
 
-def _row_of(n_memory, n_terms):
-    return one_point_row if n_memory // n_terms in ONE_POINT_COMPONENTS else mean_dilatation_row
+def _element_row_of(n_memory, n_terms, single):
+    row = one_point_row if n_memory // n_terms in ONE_POINT_COMPONENTS else mean_dilatation_row
+    return in_single_precision(row) if single else row
 
 
 @overload(element_row)
 def choose_element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     """What numba compiles in place of :func:`element_row`."""
-    row = _row_of(memory.count, terms.count)
+    row = _element_row_of(memory.count, terms.count, u.dtype == types.float32)
 
     def call(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
         row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
+
+    return call
+
+
+def move_row(j, start, stop, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+    """Move part of a row of nodes, in the precision of its state; chosen when compiled."""
+    row, number = _node_row_of(u.dtype == np.float32)
+    row(j, start, stop, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
+
+
+def _node_row_of(single):
+    return (in_single_precision(node_row), types.float32) if single else (node_row, types.float64)
+
+
+@overload(move_row)
+def choose_move_row(j, start, stop, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+    """What numba compiles in place of :func:`move_row`."""
+    row, number = _node_row_of(u.dtype == types.float32)
+
+    def call(j, start, stop, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+        row(j, start, stop, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
 
     return call
 
@@ -104,6 +127,11 @@ def choose_element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factor
 def _slot(j, first):
     """Buffer of element row j in a share that begins at ``first``."""
     return 0 if j == first else 1 + (j - first) % 2
+
+
+@strict
+def _move_row(j, below, above, a, dt_velocity, dt):
+    move_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
 @strict
@@ -118,12 +146,7 @@ def _share(part, a, memory, terms, dt_velocity, dt):
             element_row(j, start, stop, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, above)
         if j > first:
             below = forces[_slot(j - 1, first)]
-            node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
-
-
-@strict
-def _move_row(j, below, above, a, dt_velocity, dt):
-    node_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+            _move_row(j, below, above, a, dt_velocity, dt)
 
 
 @strict

@@ -169,7 +169,7 @@ class Cuda:
     @cached_property
     def _on_device(self) -> _Resident:
         model, (rows, columns) = self._model, self._model.mesh.shape
-        arrays = model.arrays._replace(forces=np.zeros((rows, 8, columns + 2)))
+        arrays = model.arrays._replace(forces=np.zeros((rows, 8, columns + 2), model.arrays.u.dtype))
         boundary = model.boundary
         names = ("motion", "motion_across", "old", "bins")
         return _Resident(

@@ -29,9 +29,8 @@ from wrinklewave.dynamics.boundary import (
 )
 from wrinklewave.dynamics.energy import HOURGLASS_AMPLITUDE, J_LEAST, N_COLUMNS, survey_run
 from wrinklewave.dynamics.fields import fields_run
-from wrinklewave.dynamics.rows import node_row
 from wrinklewave.dynamics.stable_step import stable_step_run
-from wrinklewave.dynamics.step import element_row
+from wrinklewave.dynamics.step import element_row, move_row
 
 BLOCK = 256
 """Threads per block on a device; kernels work with fewer, if a power of two."""
@@ -73,7 +72,7 @@ def _nodes(first, dt_velocity, dt, a):
         i = p - j * columns
         below = a.forces[j - 1] if j > 0 else a.nothing
         above = a.forces[j] if j < rows - 1 else a.nothing
-        node_row(j, i, i + 1, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+        move_row(j, i, i + 1, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
 @cuda.jit(device=True)
