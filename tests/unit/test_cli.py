@@ -189,6 +189,15 @@ def test_ctrl_c_ends_without_traceback() -> None:
     assert "Traceback" not in err
 
 
+def test_ctrl_c_is_told(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("wrinklewave.environment.versions", interrupted)
+    code, _, err = run(capsys, monkeypatch, "doctor")
+    assert (code, err.strip()) == (130, "wrinklewave: stopped")
+
+
 def test_doctor(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     code, out, _ = run(capsys, monkeypatch, "doctor")
     assert code == 0

@@ -40,10 +40,12 @@ def test_nothing_to_go_over(text):
 def test_a_key_twice(tmp_path):
     with pytest.raises(InputError, match="twice"):
         sweep(QUICK, ["solver.safety=0.9", "solver.safety=0.8"], out=tmp_path)
+    with pytest.raises(InputError, match=r"--over: solver\.safety: a value twice"):
+        sweep(QUICK, ["solver.safety=0.9, 0.9"], out=tmp_path)
 
 
 def test_wrong_values_are_found_before_anything_runs(tmp_path):
-    with pytest.raises(InputError, match=r"drive\.velocity"):
+    with pytest.raises(InputError, match=r"--over: drive\.velocity"):
         sweep(QUICK, ["drive.velocity=10 m/s, 10 kg"], out=tmp_path)
     assert not list(tmp_path.iterdir())
 

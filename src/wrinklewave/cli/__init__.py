@@ -10,7 +10,9 @@ traceback.
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from errno import EACCES, EEXIST, EISDIR, ENOENT, ENOTDIR, EPERM, EROFS
+from functools import wraps
 from importlib import import_module
 from pkgutil import iter_modules
 from typing import Annotated
@@ -53,8 +55,22 @@ def application() -> typer.Typer:
     names = {module.name for module in iter_modules(verbs.__path__)}
     for name in sorted(names, key=lambda name: (ORDER.index(name) if name in ORDER else len(ORDER), name)):
         module = import_module(f"{verbs.__name__}.{name}")
-        app.command(name.replace("_", "-"))(getattr(module, name))
+        app.command(name.replace("_", "-"))(_telling_of_a_stop(getattr(module, name)))
     return app
+
+
+def _telling_of_a_stop(verb: Callable[..., None]) -> Callable[..., None]:
+    """The verb, which says so if Ctrl-C ends it: typer leaves without a word."""
+
+    @wraps(verb)
+    def told(*arguments: object, **options: object) -> None:
+        try:
+            verb(*arguments, **options)
+        except KeyboardInterrupt:
+            print("wrinklewave: stopped", file=sys.stderr)
+            raise
+
+    return told
 
 
 def _print_version(wanted: bool) -> None:

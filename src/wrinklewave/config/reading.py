@@ -50,7 +50,12 @@ def read_text(path: str | Path) -> str:
     except FileNotFoundError as error:
         raise InputError("no such file", file=file, cure="check the path") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"is no text ({error})", file=file, expected="a TOML file in UTF-8") from error
+        raise InputError(
+            f"is no text ({error})",
+            file=file,
+            expected="a TOML file in UTF-8",
+            cure="of a recording: wrinklewave inspect writes an experiment file for it",
+        ) from error
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror})", file=file, expected="a TOML file") from error
 

@@ -14,6 +14,7 @@ from wrinklewave import surface as surfaces
 from wrinklewave.config.drives import CompressionDrive, EndMotionDrive, StrikerDrive
 from wrinklewave.config.reading import load_case
 from wrinklewave.config.writing import toml_text
+from wrinklewave.errors import InputError
 from wrinklewave.imaging.camera import Camera, Film, Striker, Wires, film
 from wrinklewave.imaging.writing import write_recording
 
@@ -84,6 +85,13 @@ def film_run(
     length = float(surface.attrs["length"])
     places = tuple(share * length for share in WIRE_PLACES) if wires is None else tuple(wires)
     slow = _is_slow(surface, case)
+    if frames is not None and not slow:
+        raise InputError(
+            f"{frames} frames of an impact",
+            key="--frames",
+            expected="a quasi-static run: an impact is filmed until it ends",
+            cure="leave it out, or choose --frame-rate",
+        )
     recording = film(
         surface,
         viewer,

@@ -130,12 +130,26 @@ def _members(
 ) -> Iterator[Member]:
     if len({key for key, _ in axes}) < len(axes):
         raise InputError("goes over one key twice", file="--over", cure="give all its values at once")
+    for key, values in axes:
+        if len(set(values)) < len(values):
+            raise InputError("a value twice", file="--over", key=key, cure="leave one out")
     places = itertools.product(*(range(len(values)) for _, values in axes))
     for n, place in enumerate(places):
         own = tuple(f"{key}={values[k]}" for (key, values), k in zip(axes, place, strict=True))
-        choices = (*overrides, *own)
-        of_member = case.overridden(*choices) if isinstance(case, Case) else load_case(case, choices)
-        yield Member(place, own, of_member, out / "runs" / f"{n:04d}")
+        yield Member(place, own, _case_of(case, overrides, own), out / "runs" / f"{n:04d}")
+
+
+def _case_of(case: str | Path | Case, overrides: Sequence[str], own: Sequence[str]) -> Case:
+    """The case of one combination; a mistake in its own values is one of ``--over``."""
+    choices = (*overrides, *own)
+    try:
+        return case.overridden(*choices) if isinstance(case, Case) else load_case(case, choices)
+    except InputError as error:
+        if error.file != "--set" or not any(choice.startswith(f"{error.key}=") for choice in own):
+            raise
+        raise InputError(
+            error.problem, file="--over", key=error.key, expected=error.expected, cure=error.cure
+        ) from error
 
 
 def _prepare(members: Sequence[Member], out: Path, *, resume: bool, overwrite: bool) -> None:

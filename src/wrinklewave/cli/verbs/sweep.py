@@ -63,7 +63,7 @@ def sweep(
     )
     out_ = console()
     if outcome is not Outcome.FINISHED:
-        out_.print(f"{outcome.value}: the same command with --resume")
+        out_.print(outcome.value)
         raise typer.Exit(130)
     failed = int((table["outcome"] != "finished").sum())
     out_.print(f"{table['outcome'].size} runs, {failed} of them failed; look at {folder / 'sweep.csv'}")

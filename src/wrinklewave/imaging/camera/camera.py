@@ -14,6 +14,8 @@ from wrinklewave.errors import InputError
 if TYPE_CHECKING:
     import xarray as xr
 
+MOST_PIXELS = 40_000_000
+"""Of a frame, which is rendered as a whole; far beyond what high-speed cameras have."""
 SMALLEST_BLUR = 0.3
 LARGEST_TILT = math.radians(3.0)
 
@@ -66,7 +68,10 @@ class Camera:
     def __post_init__(self) -> None:
         rules = {
             "scale": (self.scale > 0, "a positive number of pixels per metre"),
-            "shape": (min(self.shape) >= 8, "at least 8 x 8 pixels"),
+            "shape": (
+                min(self.shape) >= 8 and math.prod(self.shape) <= MOST_PIXELS,
+                f"from 8 x 8 to {MOST_PIXELS / 1e6:g} million pixels: choose another scale",
+            ),
             "blur": (self.blur >= SMALLEST_BLUR, f"at least {SMALLEST_BLUR} px: no lens is sharper"),
             "tilt": (abs(self.tilt) <= LARGEST_TILT, "at most 3 degrees (0.052 rad)"),
             "frame_rate": (self.frame_rate > 0, "a positive number of frames per second"),
