@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from wrinklewave.config import load_case, read_history, read_profile
+from wrinklewave.config.experiment import load_experiment
 from wrinklewave.config.problems import CombinedInputError
 from wrinklewave.errors import InputError
 
@@ -97,6 +98,14 @@ def test_folder_and_binary_file(tmp_path: Path) -> None:
     (tmp_path / "picture.toml").write_bytes(b"\x89PNG\xff\xfe")
     with pytest.raises(InputError, match="is no text"):
         load_case(tmp_path / "picture.toml")
+
+
+def test_a_case_is_no_experiment_and_the_reverse(tmp_path: Path) -> None:
+    file = tmp_path / "some.toml"
+    for section, read, verb in (("video", load_case, "measure"), ("block", load_experiment, "simulate")):
+        file.write_text(f"[{section}]\n[analysis]\n", "utf-8")
+        with pytest.raises(InputError, match=f"wrinklewave {verb} takes it"):
+            read(file)
 
 
 def test_all_mistakes_come_at_once(tmp_path: Path) -> None:

@@ -95,7 +95,7 @@ def test_command(run: Path, tmp_path: Path) -> None:
     ("options", "key"),
     [(["--exposure", "5"], "--exposure"), (["--wire", "12 kg"], "--wire"), (["--blur", "0.1"], "blur"),
      (["--wire", "90 mm"], "wires"), (["--exposure", "1 ms"], "exposure"), (["--scale", "9000"], "shape"),
-     (["--frames", "7"], "--frames")],
+     (["--frames", "7"], "--frames"), (["--contrast-to-noise", "0"], "contrast_to_noise")],
 )  # fmt: skip
 def test_mistakes(run: Path, tmp_path: Path, options: list[str], key: str) -> None:
     result = CliRunner().invoke(application(), ["film", str(run), "--out", str(tmp_path / "v.tif"), *options])

@@ -57,7 +57,10 @@ def read_text(path: str | Path) -> str:
             cure="of a recording: wrinklewave inspect writes an experiment file for it",
         ) from error
     except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror})", file=file, expected="a TOML file") from error
+        cure = f"give {file / 'case.toml'}" if (file / "case.toml").exists() else None
+        raise InputError(
+            f"cannot be read ({error.strerror})", file=file, expected="a TOML file", cure=cure
+        ) from error
 
 
 def read_model(
@@ -82,7 +85,9 @@ def read_model(
     Raises:
         InputError: with all mistakes that were found.
     """
-    data, overridden = apply_overrides(parse_toml(text, source), overrides)
+    written = parse_toml(text, source)
+    _check_kind(model, written, source)
+    data, overridden = apply_overrides(written, overrides)
     try:
         read = model.model_validate(_frozen(data), context={"folder": Path(folder).absolute()})
     except ValidationError as failure:
@@ -92,6 +97,18 @@ def read_model(
     together = f"{source} (with --set {', '.join(overridden)})" if overridden else source
     raise_all([_placed(error, together, overridden) for error in check(read)])
     return read
+
+
+def _check_kind(model: type[BaseModel], written: Mapping[str, Any], source: object) -> None:
+    """One sentence, rather than one for each section, if a case stands in for an experiment or the reverse."""
+    for section, kind, verb in (("video", "an experiment", "measure"), ("block", "a case", "simulate")):
+        if section in written and section not in model.model_fields:
+            raise InputError(
+                f"describes {kind}: it has a section [{section}]",
+                file=source,
+                expected=f"sections {', '.join(model.model_fields)}",
+                cure=f"wrinklewave {verb} takes it",
+            )
 
 
 def parse_toml(text: str, source: object) -> dict[str, Any]:

@@ -82,8 +82,7 @@ def film_run(
     viewer = Camera.framing(surface, scale=scale, **camera)
     if contrast_to_noise is not None:
         viewer = viewer.at_contrast_to_noise(contrast_to_noise)
-    length = float(surface.attrs["length"])
-    places = tuple(share * length for share in WIRE_PLACES) if wires is None else tuple(wires)
+    places = _wire_places(surface) if wires is None else tuple(wires)
     slow = _is_slow(surface, case)
     if frames is not None and not slow:
         raise InputError(
@@ -101,6 +100,18 @@ def film_run(
         frames_before=FRAMES_BEFORE,
     )
     return _write(recording, Path(video), surface, case, threads, progress)
+
+
+def _wire_places(surface: xr.Dataset) -> tuple[float, ...]:
+    """A quarter, half and three quarters of the length, where material points are known there."""
+    X = surface["X"].values
+    near = 1e-3 * float(surface.attrs["length"])  # the outermost wires of a measurement are its ends
+    wanted = (share * float(surface.attrs["length"]) for share in WIRE_PLACES)
+    return tuple(
+        min(max(place, float(X[0])), float(X[-1]))
+        for place in wanted
+        if X.size and X[0] - near <= place <= X[-1] + near
+    )
 
 
 def _is_slow(surface: xr.Dataset, case: Case | None) -> bool:

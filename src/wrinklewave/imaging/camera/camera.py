@@ -119,6 +119,10 @@ class Camera:
 
     def at_contrast_to_noise(self, ratio: float) -> Self:
         """The same camera with even noise (no shot noise) of the given contrast-to-noise ratio."""
+        if not ratio > 0:
+            raise InputError(
+                f"{ratio:g}", file="camera", key="contrast_to_noise", expected="a positive number"
+            )
         return replace(self, full_well=math.inf, read_noise=self.contrast / ratio)
 
     def to_pixels(self, x: ArrayLike, y: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
