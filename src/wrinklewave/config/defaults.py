@@ -85,8 +85,13 @@ def _si(data: Table, section: str, key: str, dimension: Dimension, *, otherwise:
 
 
 def _m(value: float) -> str:
-    return units.format_si(value, LENGTH)
+    return units.format_si(_rounded(value), LENGTH)
 
 
 def _s(value: float) -> str:
-    return units.format_si(value, TIME)
+    return units.format_si(_rounded(value), TIME)
+
+
+def _rounded(value: float) -> float:
+    """Without the last digits that a product leaves behind: 0.04536, not 0.045360000000000004."""
+    return float(f"{value:.12g}")

@@ -136,7 +136,8 @@ def _describe(run: Run) -> None:
     from wrinklewave.report.run import warnings
 
     out = console()
-    out.print(summary_table(run.summary, HEADLINE))
+    slow = run.case.drive.kind == "compression"  # without fronts
+    out.print(summary_table(run.summary, [name for name in HEADLINE if not (slow and "_speed_" in name)]))
     for warning in warnings(run.summary):
         out.print(f"[yellow]{warning}[/yellow]")
     out.print(f"finished in {run.summary['wall_time_s']:.1f} s; look at {run.folder / 'report.html'}")  # type: ignore[operator]
