@@ -117,7 +117,10 @@ class Output(Section):
 
     surface_interval: Annotated[PositiveTime, Field(description="between frames of surface.nc")]
     field_interval: Annotated[PositiveTime, Field(description="between frames of fields.vtkhdf")]
-    history_interval: Annotated[PositiveTime, Field(description="between rows of history.csv")]
+    history_interval: Annotated[
+        PositiveTime,
+        Field(description="between rows of history.csv; a row costs two or three steps, but none at frames"),
+    ]
     probes: Annotated[
         tuple[NotNegativeLength, ...], Field(description="undeformed x of the surface points in probes.csv")
     ] = ()

@@ -30,7 +30,7 @@ def fill_defaults(data: Table) -> dict[str, Any]:
         "output": {
             "surface_interval": _s(end / 500),
             "field_interval": _s(end / 50),
-            "history_interval": _s(end / 2500),
+            "history_interval": _s(end / 500),  # energies are computed at every surface frame in any case
             "pixel_size": _m(length / 1000),
         },
         "analysis": {

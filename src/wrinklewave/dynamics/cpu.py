@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from wrinklewave.dynamics.backends import Sample, Snapshot
 from wrinklewave.dynamics.boundary import N_TOTALS
-from wrinklewave.dynamics.energy import N_COLUMNS, kinetic_energy, survey_share
-from wrinklewave.dynamics.fields import FIELDS, fields_share
+from wrinklewave.dynamics.energy import KINETIC, N_COLUMNS, N_SUMS, survey_share
+from wrinklewave.dynamics.fields import FIELDS, fields_share, set_aside
 from wrinklewave.dynamics.stable_step import stable_steps_share
 from wrinklewave.dynamics.step import advance
 from wrinklewave.dynamics.team import share_out
@@ -55,6 +56,20 @@ class Pace:
         self._seconds[self._current] = self.MEMORY * old + (1 - self.MEMORY) * seconds if old else seconds
 
 
+@dataclass(frozen=True, eq=False)
+class _Slot:
+    """Room for a state, used over and over: memory that is new to the process costs more than what is copied to it."""
+
+    nodal: NDArray[np.float64]
+    memory: NDArray[np.float64]
+    factors: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, model: Model) -> _Slot:
+        nodal = np.empty((4, *model.mesh.X.shape))
+        return cls(nodal, np.empty_like(model.memory), np.empty_like(model.arrays.factors))
+
+
 class Cpu:
     """A :class:`~wrinklewave.dynamics.backends.Backend` on one or more threads; results do not depend on how many."""
 
@@ -64,10 +79,11 @@ class Cpu:
         self._model, self._parts = model, parts
         self._memory = model.memory_rows
         self._steps = np.zeros((rows, columns))
-        self._survey = np.zeros((rows, N_COLUMNS))
+        self._survey = np.zeros((rows + 1, N_SUMS))
         self._work = np.zeros((parts, N_COLUMNS, columns))
-        alone = model.arrays._replace(shares=np.array([0, rows]))
-        self._pace = Pace([model.arrays, alone] if parts > 1 else [model.arrays])
+        self._alone = model.arrays._replace(shares=np.array([0, rows]))
+        self._pace = Pace([model.arrays, self._alone] if parts > 1 else [model.arrays])
+        self._slots: list[_Slot] = []  # that no snapshot holds
         self._compiled = False
 
     def march(
@@ -85,8 +101,8 @@ class Cpu:
             seconds = time.perf_counter() - begin
             self._pace.note(seconds / count)
             share_out(survey_share, self._parts, dt, a, self._memory, m.terms, self._work, self._survey)
-            kinetic = kinetic_energy(a.inverse_mass, a.vx, a.vy)
-            yield Sample(count, seconds, self._survey, kinetic, (a.u[-1, 0], a.w[-1, 0]))
+            kinetic = float(self._survey[:, KINETIC].sum())
+            yield Sample(count, seconds, self._survey[:-1, :N_COLUMNS], kinetic, (a.u[-1, 0], a.w[-1, 0]))
 
     def _compile(self) -> None:
         """Take no step once, so that the time of the first steps is not that of the compiler."""
@@ -106,17 +122,18 @@ class Cpu:
 
     def snapshot(self) -> Callable[[], Snapshot]:
         """Copy the state; its fields can be computed while the next steps are taken."""
-        a = self._model.arrays
-        nodal = np.stack([a.u, a.w, a.vx, a.vy])
-        memory, factors = self._model.memory.copy(), a.factors.copy()
+        a, slot = self._alone, self._slots.pop() if self._slots else _Slot.of(self._model)
+        set_aside(a.u, a.w, a.vx, a.vy, self._model.memory, slot.nodal, slot.memory)
+        slot.factors[:] = a.factors
 
         def fields() -> Snapshot:
-            u, w, vx, vy = nodal
-            then = a._replace(u=u, w=w, vx=vx, vy=vy, factors=factors)
+            u, w, vx, vy = slot.nodal
+            then = a._replace(u=u, w=w, vx=vx, vy=vy, factors=slot.factors)
             out = np.empty((len(FIELDS), *self._model.mesh.shape))
-            for part in range(self._parts):
-                fields_share(part, then, tuple(memory), self._model.terms, out)
-            return Snapshot(nodal, out)
+            fields_share(0, then, tuple(slot.memory), self._model.terms, out)
+            found = Snapshot(slot.nodal.copy(), out)
+            self._slots.append(slot)
+            return found
 
         return fields
 

@@ -9,8 +9,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from wrinklewave._jit import scalar, serial, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.elements.one_point import HOURGLASS_STIFFNESS
@@ -22,6 +20,8 @@ STORED, SPRINGS, VISCOUS, BULK_VISCOUS, HOURGLASS, HOURGLASS_AMPLITUDE, J_LEAST,
 """Columns of a survey: long-term elastic energy and energy in the Prony springs [J/m]; power of the overstress, of
 bulk viscosity and of hourglass control [W/m]; largest hourglass amplitude per element size; range of J."""
 N_COLUMNS = 8
+KINETIC, N_SUMS = N_COLUMNS, N_COLUMNS + 1
+"""What is summed up of a row: a survey's columns, then the kinetic energy of its nodes at mid-step [J/m]."""
 
 
 class Point(NamedTuple):
@@ -200,9 +200,25 @@ def _largest(values, sign):
     return largest
 
 
+@scalar
+def kinetic_energy(inverse_mass, vx, vy):
+    """Kinetic energy [J/m] of a node; one without mass has none."""
+    return 0.5 * (vx * vx + vy * vy) / inverse_mass if inverse_mass > 0.0 else 0.0
+
+
+@vector
+def _kinetic_row(j, inverse_mass, vx, vy):
+    r, total = uintp(j), 0.0
+    for i in range(uintp(vx.shape[1])):
+        total += kinetic_energy(inverse_mass[r, i], vx[r, i], vy[r, i])
+    return total
+
+
 @serial
 def survey_share(part, dt, a, memory, terms, work, out):
-    """Fill the rows of one share in ``out`` [n_rows, N_COLUMNS] with the sums, or extremes, of each element row.
+    """Fill the rows of one share in ``out`` [n_rows + 1, N_SUMS] with the sums, or extremes, of each row.
+
+    A row of elements counts the nodes below it; the topmost nodes have the last row to themselves.
 
     ``work`` [n_parts, N_COLUMNS, n_columns] is a buffer. ``dt`` [s] is the step that led to the present state.
     """
@@ -215,9 +231,7 @@ def survey_share(part, dt, a, memory, terms, work, out):
             out[j, column] = _sum(row[column])
         out[j, HOURGLASS_AMPLITUDE] = _largest(row[HOURGLASS_AMPLITUDE], 1.0)
         out[j, J_LEAST], out[j, J_MOST] = -_largest(row[J_LEAST], -1.0), _largest(row[J_MOST], 1.0)
-
-
-def kinetic_energy(inverse_mass: np.ndarray, vx: np.ndarray, vy: np.ndarray) -> float:
-    """Kinetic energy [J/m] at mid-step; nodes without mass have none."""
-    moving = inverse_mass > 0
-    return 0.5 * float(np.sum((vx[moving] ** 2 + vy[moving] ** 2) / inverse_mass[moving]))
+        out[j, KINETIC] = _kinetic_row(j, a.inverse_mass, a.vx, a.vy)
+    top = a.u.shape[0] - 1
+    if a.shares[part + 1] == top:
+        out[top, KINETIC] = _kinetic_row(top, a.inverse_mass, a.vx, a.vy)

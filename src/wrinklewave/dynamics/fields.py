@@ -64,6 +64,19 @@ def fields_run(j, start, stop, layer, a, memory, terms, out):
         out[XX, r, i], out[YY, r, i], out[XY, r, i], out[VOLUME, r, i] = xx, yy, xy, 1.0 + e
 
 
+@vector
+def set_aside(u, w, vx, vy, memory, nodal, remembered):
+    """Copy the state, u, w, vx and vy to ``nodal`` [4, ...], letting go of the interpreter's lock only once."""
+    for j in range(uintp(u.shape[0])):
+        for i in range(uintp(u.shape[1])):
+            nodal[0, j, i], nodal[1, j, i] = u[j, i], w[j, i]
+            nodal[2, j, i], nodal[3, j, i] = vx[j, i], vy[j, i]
+    for k in range(uintp(memory.shape[0])):
+        for j in range(uintp(memory.shape[1])):
+            for i in range(uintp(memory.shape[2])):
+                remembered[k, j, i] = memory[k, j, i]
+
+
 @serial
 def fields_share(part, a, memory, terms, out):
     """Fill the rows of one share in ``out`` [len(FIELDS), n_rows, n_columns] with the fields of the present state."""

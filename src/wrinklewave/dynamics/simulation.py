@@ -58,6 +58,8 @@ SHRINKAGE = 0.05
 """The stable step is estimated anew before it can have shrunk by this part, as far as the last estimates tell."""
 FEWEST_STEPS, MOST_STEPS = 4, 64
 """Steps between two estimates: at the start, and at most."""
+ROUNDING = 1e-9
+"""Steps that fill an interval are as many as they should be, whatever their division says in its last digits."""
 
 
 @dataclass(frozen=True)
@@ -158,7 +160,7 @@ class Simulation:
             t = stop if count == n else t + count * dt
 
     def _march(self, n: int, start: float, dt: float) -> None:
-        group, done = max(1, int(self.history_interval / dt)), 0
+        group, done = max(1, int((1 + ROUNDING) * self.history_interval / dt)), 0
         for sample in self.backend.march(n, group, start, self.dt, dt, self.totals):
             done += sample.steps
             self.step += sample.steps

@@ -27,16 +27,20 @@ from wrinklewave.dynamics.boundary import (
     remember_node,
     straight_rate,
 )
-from wrinklewave.dynamics.energy import HOURGLASS_AMPLITUDE, J_LEAST, N_COLUMNS, survey_run
+from wrinklewave.dynamics.energy import (
+    HOURGLASS_AMPLITUDE,
+    J_LEAST,
+    KINETIC,
+    N_COLUMNS,
+    kinetic_energy,
+    survey_run,
+)
 from wrinklewave.dynamics.fields import fields_run
 from wrinklewave.dynamics.stable_step import stable_step_run
 from wrinklewave.dynamics.step import element_row, move_row
 
 BLOCK = 256
 """Threads per block on a device; kernels work with fewer, if a power of two."""
-KINETIC = N_COLUMNS
-N_SUMS = N_COLUMNS + 1
-"""Sums of a row: a survey's columns, then the kinetic energy of its nodes."""
 
 
 def _kernel(**options: Any) -> Callable[[Callable[..., Any]], Any]:
@@ -136,13 +140,6 @@ def _total(column, value, shared):
 
 
 @cuda.jit(device=True)
-def _kinetic(j, i, a):
-    if a.inverse_mass[j, i] <= 0.0:
-        return 0.0
-    return 0.5 * (a.vx[j, i] * a.vx[j, i] + a.vy[j, i] * a.vy[j, i]) / a.inverse_mass[j, i]
-
-
-@cuda.jit(device=True)
 def _sums(dt, a, layer, memory, terms, sums):
     """Sums of each row by one block, in an order that the size of the grid does not change.
 
@@ -154,7 +151,7 @@ def _sums(dt, a, layer, memory, terms, sums):
     for j in range(cuda.blockIdx.x, rows + 1, cuda.gridDim.x):
         value = 0.0
         for i in range(thread, columns + 1, threads):
-            value += _kinetic(j, i, a)
+            value += kinetic_energy(a.inverse_mass[j, i], a.vx[j, i], a.vy[j, i])
         sums[j, KINETIC] = _total(KINETIC, value, shared)
         if j == rows:
             continue
