@@ -49,8 +49,9 @@ def test_kinetic_energy_is_that_of_all_nodes(name):
     simulation = at_the_end(MODELS[name]())
     (sample,) = simulation.backend.march(1, 1, END, simulation.dt, simulation.dt, simulation.totals)
     a = simulation.model.arrays
-    moving = a.inverse_mass > 0
-    expected = 0.5 * np.sum((a.vx[moving] ** 2 + a.vy[moving] ** 2) / a.inverse_mass[moving])
+    vx, vy, inverse_mass = (values.astype(np.float64) for values in (a.vx, a.vy, a.inverse_mass))
+    moving = inverse_mass > 0
+    expected = 0.5 * np.sum((vx[moving] ** 2 + vy[moving] ** 2) / inverse_mass[moving])
     assert expected > 0
     assert sample.kinetic == pytest.approx(expected, rel=1e-13)
 

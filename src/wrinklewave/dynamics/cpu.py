@@ -66,7 +66,7 @@ class _Slot:
 
     @classmethod
     def of(cls, model: Model) -> _Slot:
-        nodal = np.empty((4, *model.mesh.X.shape))
+        nodal = np.empty((4, *model.mesh.X.shape), model.arrays.u.dtype)
         return cls(nodal, np.empty_like(model.memory), np.empty_like(model.arrays.factors))
 
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from numba import float64
+
 from wrinklewave._jit import scalar, serial, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import dot, point_gradients
 from wrinklewave.dynamics.elements.one_point import HOURGLASS_STIFFNESS
@@ -202,8 +204,9 @@ def _largest(values, sign):
 
 @scalar
 def kinetic_energy(inverse_mass, vx, vy):
-    """Kinetic energy [J/m] of a node; one without mass has none."""
-    return 0.5 * (vx * vx + vy * vy) / inverse_mass if inverse_mass > 0.0 else 0.0
+    """Kinetic energy [J/m] of a node, in double precision whatever that of the state; one without mass has none."""
+    x, y, m = float64(vx), float64(vy), float64(inverse_mass)
+    return 0.5 * (x * x + y * y) / m if m > 0.0 else 0.0
 
 
 @vector
