@@ -12,13 +12,15 @@ from functools import cache
 from threading import Lock
 from typing import Any
 
+MOST_HELPERS = max(2, os.cpu_count() or 1)
+"""Threads beside the one that calls."""
 _WHOLE_TEAM = Lock()
 """Parts of one task may wait for each other, so the threads serve one task at a time."""
 
 
 @cache
 def _helpers() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(max(2, os.cpu_count() or 1), thread_name_prefix="wrinklewave")
+    return ThreadPoolExecutor(MOST_HELPERS, thread_name_prefix="wrinklewave")
 
 
 def share_out(kernel: Callable[..., Any], n_parts: int, *arguments: Any) -> None:
@@ -30,8 +32,8 @@ def share_out(kernel: Callable[..., Any], n_parts: int, *arguments: Any) -> None
     if n_parts == 1:
         kernel(0, *arguments)
         return
-    if n_parts - 1 > _helpers()._max_workers:
-        raise ValueError(f"{n_parts} parts for {_helpers()._max_workers + 1} threads")
+    if n_parts - 1 > MOST_HELPERS:
+        raise ValueError(f"{n_parts} parts for {MOST_HELPERS + 1} threads")
     with _WHOLE_TEAM:
         others = [_helpers().submit(kernel, part, *arguments) for part in range(1, n_parts)]
         kernel(0, *arguments)

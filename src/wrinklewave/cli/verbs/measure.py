@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import time
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -69,56 +71,44 @@ def measure(
 
     loaded = load_experiment(experiment, overrides or ())
     folder = out or Path("runs") / experiment.name.removesuffix(".toml").removesuffix(".experiment")
-    procedure = _measure_impact if loaded.kind == "impact" else _measure_quasi_static
-    procedure(loaded, folder, threads=threads, resume=resume, overwrite=overwrite)
+    options = {"threads": threads, "resume": resume, "overwrite": overwrite}
+    if loaded.kind == "impact":
+        from wrinklewave.experiments.measure import measure as measure_impact
+        from wrinklewave.report.measurement import present_measurement
+
+        _carry_out(measure_impact, present_measurement, HEADLINE, loaded, folder, options)
+    else:
+        from wrinklewave.experiments.measure_quasi_static import measure_quasi_static
+        from wrinklewave.report.quasi_static import present_measured_test
+
+        _carry_out(
+            measure_quasi_static, present_measured_test, QUASI_STATIC_HEADLINE, loaded, folder, options
+        )
 
 
-def _measure_impact(
-    experiment: Experiment, folder: Path, *, threads: int | None, resume: bool, overwrite: bool
+def _carry_out(
+    procedure: Callable[..., Any],
+    present: Callable[[Any], Path],
+    headline: Sequence[str],
+    experiment: Experiment,
+    folder: Path,
+    options: dict[str, Any],
 ) -> None:
+    """Measure by a procedure and show what came out; exit code 130 if it was interrupted."""
     from wrinklewave.cli.console import console
     from wrinklewave.cli.progress import COMPILING, shown_progress
     from wrinklewave.experiments.interruption import Outcome
-    from wrinklewave.experiments.measure import measure as measure_experiment
     from wrinklewave.report import summary_table
-    from wrinklewave.report.measurement import present_measurement
 
     screen = console()
+    begin = time.perf_counter()
     with shown_progress(experiment.name, COMPILING) as progress:
-        found = measure_experiment(
-            experiment, out=folder, threads=threads, resume=resume, overwrite=overwrite, progress=progress
-        )
+        found = procedure(experiment, out=folder, progress=progress, **options)
     if found.outcome is not Outcome.FINISHED:
         screen.print(found.outcome.value)
         raise typer.Exit(130)
-    report = present_measurement(found)
-    screen.print(summary_table(found.summary, HEADLINE))
+    report = present(found)
+    screen.print(summary_table(found.summary, headline))
     for warning in found.warnings:
         screen.print(f"[yellow]{warning}[/yellow]")
-    screen.print(f"finished in {found.summary['wall_time_s']:.1f} s; look at {report}")
-
-
-def _measure_quasi_static(
-    experiment: Experiment, folder: Path, *, threads: int | None, resume: bool, overwrite: bool
-) -> None:
-    from wrinklewave.cli.console import console
-    from wrinklewave.cli.progress import COMPILING, shown_progress
-    from wrinklewave.experiments.interruption import Outcome
-    from wrinklewave.experiments.measure_quasi_static import measure_quasi_static
-    from wrinklewave.report import summary_table
-    from wrinklewave.report.quasi_static import present_measured_test
-
-    screen = console()
-    with shown_progress(experiment.name, COMPILING) as progress:
-        found = measure_quasi_static(
-            experiment, out=folder, threads=threads, resume=resume, overwrite=overwrite, progress=progress
-        )
-    if found.outcome is not Outcome.FINISHED:
-        screen.print(found.outcome.value)
-        raise typer.Exit(130)
-    report = present_measured_test(found)
-    shown = [name for name in QUASI_STATIC_HEADLINE if name in found.summary]
-    screen.print(summary_table(found.summary, shown))
-    for warning in found.warnings:
-        screen.print(f"[yellow]{warning}[/yellow]")
-    screen.print(f"look at {report}")
+    screen.print(f"finished in {time.perf_counter() - begin:.1f} s; look at {report}")
