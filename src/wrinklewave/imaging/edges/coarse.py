@@ -92,7 +92,7 @@ def _scores(response: Pixels, sign: np.float32) -> Pixels:
     best = np.zeros(response.shape[1], np.float32)
     for r in range(response.shape[0]):
         _keep_largest(response[r], sign, best)
-    gain = sign / np.float32(max(np.median(best), 1e-6))
+    gain = sign / np.float32(max(float(np.median(best)), 1e-6))
     score = np.empty((response.shape[1], response.shape[0]), np.float32)
     _clip_and_transpose(response, gain, score)
     return score

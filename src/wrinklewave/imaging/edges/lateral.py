@@ -12,8 +12,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from wrinklewave._jit import allocating
+from wrinklewave._jit import allocating, uintp, vector
 from wrinklewave.imaging.arrays import Floats
+from wrinklewave.imaging.edges.banded import add_product
 from wrinklewave.imaging.edges.profile import normal_distribution
 
 _SHARES = 17  # table of blurs between v/2 (steep) and v (level)
@@ -37,26 +38,29 @@ def lateral_kernels(blur: float) -> NDArray[np.float64]:
 
 @allocating
 def local_kernels(slope: Floats, kernels: Floats) -> Floats:
-    """Rows of B, shape [n, 2 reach + 1], for the slopes at n columns."""
-    n, width = slope.size, kernels.shape[1]
-    rows = np.empty((n, width))
-    for i in range(n):
-        position = (_SHARES - 1) / (1.0 + slope[i] * slope[i])  # (1 + m2/2)/(1 + m2) = 1/2 + 1/2 1/(1 + m2)
-        k = min(int(position), _SHARES - 2)
-        f = position - k
-        for j in range(width):
-            rows[i, j] = (1.0 - f) * kernels[k, j] + f * kernels[k + 1, j]
-    return rows
+    """Rows of B, shape [2 reach + 1, n], for the slopes at n columns."""
+    local = np.empty((kernels.shape[1], slope.size))
+    place = (_SHARES - 1) / (1.0 + slope**2)  # (1 + m2/2)/(1 + m2) = 1/2 + 1/2 1/(1 + m2)
+    for j in range(kernels.shape[1]):
+        _interpolate(kernels[:, j].copy(), place, local[j])
+    return local
+
+
+@vector
+def _interpolate(table: Floats, place: Floats, values: Floats) -> None:
+    for i in range(uintp(place.size)):
+        k = min(np.int32(place[i]), np.int32(_SHARES - 2))
+        r, f = uintp(k), place[i] - k
+        values[i] = table[r] + f * (table[r + uintp(1)] - table[r])
 
 
 @allocating
 def seen_linearly(surface: Floats, local: Floats) -> Floats:
     """B y at the n columns of ``local``; the surface goes on ``reach`` columns further on both sides."""
-    n, width = local.shape
+    width, n = local.shape
     seen = np.zeros(n)
-    for i in range(n):
-        for j in range(width):
-            seen[i] += local[i, j] * surface[i + j]
+    for j in range(width):
+        add_product(local[j], surface[j : j + n], seen)
     return seen
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Floats
+from wrinklewave.imaging.edges.banded import Band, factorise, inverse_diagonal, normal_equations, solve
 
 ORDER = 8  # p
 _LOSS = 0.25  # q / b^2 at the resolution
@@ -33,63 +34,41 @@ def penalty(resolution: float, blur: float) -> float:
 @allocating
 def band_limited_surface(
     rows: Floats, sigma: Floats, level_sigma: float, slope: Floats, local: Floats, stiffness: float
-) -> tuple[Floats, Floats]:
-    """Best surface through the columns' rows, and the Cholesky factor of its normal equations.
+) -> tuple[Floats, Band]:
+    """Best surface through the columns' rows, and the factors of its normal equations.
 
     Args:
         rows: the columns' estimates [px], NaN where there is none, first and last not NaN, shape [n].
         sigma: their standard uncertainties [px], shape [n].
         level_sigma: what a level edge's would be [px].
         slope: of the surface, for straight lines beyond its ends, shape [n].
-        local: lateral blur per column, shape [n, 2 reach + 1].
+        local: lateral blur per column, shape [2 reach + 1, n].
         stiffness: from ``penalty``.
 
     Returns:
         rows of the surface [px], with ``reach`` columns more on both sides; the factor for ``uncertainty``.
     """
-    n, width = local.shape
+    width, n = local.shape
     reach = width // 2
-    band = max(2 * reach, ORDER)
-    matrix = np.zeros((n + 2 * reach, band + 1))  # matrix[i, k] = M[i, i - k]
-    right = np.zeros(n + 2 * reach)
-    filled = _filled(rows)
+    filled, weights = _filled(rows), np.full(n, _FILL)
     for i in range(n):
-        weight = (level_sigma / sigma[i]) ** 2 if np.isfinite(rows[i]) else _FILL
-        for j in range(width):
-            wb = weight * local[i, j]
-            right[i + j] += wb * filled[i]
-            for k in range(j + 1):
-                matrix[i + j, j - k] += wb * local[i, k]
+        if np.isfinite(rows[i]):
+            weights[i] = (level_sigma / sigma[i]) ** 2
+    matrix, right = normal_equations(weights, filled, local, ORDER)
     for i in range(reach):
-        matrix[i, 0] += _FILL
+        matrix.diagonal[i] += _FILL
         right[i] += _FILL * (filled[0] - slope[0] * (reach - i))
-        matrix[n + reach + i, 0] += _FILL
+        matrix.diagonal[n + reach + i] += _FILL
         right[n + reach + i] += _FILL * (filled[n - 1] + slope[n - 1] * (i + 1))
-    _add_penalty(matrix, stiffness * min(1.0, level_sigma / _USUAL_SIGMA) ** 1.5)
-    _factorise(matrix)
-    return _solve(matrix, right), matrix
+    _add_penalty(matrix, right.size, stiffness * min(1.0, level_sigma / _USUAL_SIGMA) ** 1.5)
+    factorise(matrix)
+    return solve(matrix, right), matrix
 
 
 @allocating
-def uncertainty(factor: Floats, level_sigma: float) -> Floats:
-    """Standard uncertainty of a surface, from the diagonal of the inverse of its normal equations' matrix.
-
-    Takahashi's recurrence within the band: inverse[i, k] = Z[i, i + k], and for j >= i
-    Z[i, j] = delta_ij / L_ii^2 - sum_(m > i) L_mi Z[m, j] / L_ii.
-    """
-    n, width = factor.shape
-    inverse = np.zeros((n, width))
-    for i in range(n - 1, -1, -1):
-        reach = min(width - 1, n - 1 - i)
-        pivot = factor[i, 0]
-        for k in range(reach, -1, -1):
-            total = 1.0 / pivot if k == 0 else 0.0
-            for m in range(1, k + 1):
-                total -= factor[i + m, m] * inverse[i + m, k - m]
-            for m in range(k + 1, reach + 1):
-                total -= factor[i + m, m] * inverse[i + k, m - k]
-            inverse[i, k] = total / pivot
-    return level_sigma * np.sqrt(inverse[:, 0])
+def uncertainty(factors: Band, level_sigma: float) -> Floats:
+    """Standard uncertainty of a surface, from the diagonal of the inverse of its normal equations' matrix."""
+    return level_sigma * np.sqrt(inverse_diagonal(factors))
 
 
 @allocating
@@ -137,45 +116,20 @@ def _line_beside(rows: Floats, column: int, direction: int) -> tuple[float, floa
 
 
 @allocating
-def _add_penalty(matrix: Floats, stiffness: float) -> None:
-    """Add stiffness D'D, D the differences of order ORDER with binomial coefficients."""
-    n = matrix.shape[0]
+def _add_penalty(matrix: Band, n: int, stiffness: float) -> None:
+    """Add stiffness D'D, D the differences of order ORDER of n numbers, with binomial coefficients."""
     difference = np.zeros(ORDER + 1)
     difference[0] = 1.0
     for order in range(1, ORDER + 1):
         for k in range(order, 0, -1):
             difference[k] -= difference[k - 1]
-    product = stiffness * np.outer(difference, difference)
-    for i in range(n - ORDER):
-        for j in range(ORDER + 1):
-            for k in range(j + 1):
-                matrix[i + j, j - k] += product[j, k]
-
-
-@allocating
-def _factorise(matrix: Floats) -> None:
-    """Banded Cholesky in place: matrix[i, k] becomes L[i, i - k]."""
-    n, width = matrix.shape
+    row = np.empty(ORDER + 1)
     for i in range(n):
-        reach = min(i, width - 1)
-        for k in range(reach, -1, -1):
-            j = i - k
-            total = matrix[i, k]
-            for m in range(k + 1, min(reach, width - 1 + k) + 1):
-                total -= matrix[i, m] * matrix[j, m - k]
-            matrix[i, k] = np.sqrt(total) if k == 0 else total / matrix[j, 0]
-
-
-@allocating
-def _solve(factor: Floats, right: Floats) -> Floats:
-    n, width = factor.shape
-    x = right.copy()
-    for i in range(n):
-        for k in range(1, min(i, width - 1) + 1):
-            x[i] -= factor[i, k] * x[i - k]
-        x[i] /= factor[i, 0]
-    for i in range(n - 1, -1, -1):
-        x[i] /= factor[i, 0]
-        for k in range(1, min(i, width - 1) + 1):
-            x[i - k] -= factor[i, k] * x[i]
-    return x
+        if i <= ORDER or i >= n - ORDER:  # further inside all rows are the same
+            for k in range(ORDER + 1):
+                row[k] = 0.0
+                for j in range(max(i - n + ORDER + 1, 0), min(i, ORDER - k) + 1):
+                    row[k] += stiffness * difference[j] * difference[j + k]
+        matrix.diagonal[i] += row[0]
+        for k in range(ORDER):
+            matrix.beyond[i, k] += row[k + 1]
