@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.problem import Problem
 from wrinklewave.dynamics.boundary import N_TOTALS
-from wrinklewave.dynamics.step import advance, element_row
+from wrinklewave.dynamics.step import advance, element_row, separate
 
 
 @numba.njit(error_model="numpy", nogil=True, _nrt=False)
@@ -18,7 +18,7 @@ def _all_element_rows(n_steps, a, memory, terms):
     factors, moduli = a.factors[0], a.moduli[0]
     for _ in range(n_steps):
         for j in range(rows):
-            above = a.forces[0, j % 2]
+            above = separate(a.forces[0, j % 2])
             element_row(j, 0, columns, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, above)
 
 

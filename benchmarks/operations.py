@@ -78,7 +78,7 @@ def count() -> dict[str, dict[str, int]]:
     """Operations of an element and of a node of the paper's case, by kind."""
     from benchmarks.parts import paper
     from wrinklewave.dynamics.rows import node_row
-    from wrinklewave.dynamics.step import element_row, update_factors
+    from wrinklewave.dynamics.step import element, update_factors
 
     model = paper(2, 2)
     a = model.arrays
@@ -90,7 +90,7 @@ def count() -> dict[str, dict[str, int]]:
     memory, forces = tuple(map(counting, model.memory)), counting(np.zeros((8, 4)))
     found = {}
     Counting.done.clear()
-    element_row(0, 0, 1, X, Y, u, w, vx, vy, memory, model.terms, factors, moduli, forces)
+    element(0, 0, X, Y, u, w, vx, vy, memory, model.terms, factors, moduli, forces)
     found["element"] = {kind: Counting.done[kind] for kind in KINDS}
     Counting.done.clear()
     dt = Counting(1e-6)

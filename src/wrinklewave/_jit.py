@@ -39,6 +39,15 @@ def _use_full_vector_width() -> None:
         numba.config.CPU_FEATURES = features.flatten() + ",-prefer-256-bit"
 
 
+def _vector_bytes() -> int:
+    """Of the widest vector that this processor computes with."""
+    features = llvm.get_host_cpu_features()
+    return 64 if features.get("avx512f") else 32 if features.get("avx") else 16
+
+
+VECTOR_BYTES = _vector_bytes()
+
+
 @cache
 def _kernel_cache(room: str) -> str:
     """Folder of a room's compiled kernels, under a digest of all sources that its kernels call.
@@ -68,6 +77,9 @@ _NO_COUNTING: dict[str, Any] = _COMMON | {
     "_nrt": False
 }  # kernels allocate nothing; counting references costs a third
 _FAST: dict[str, Any] = _NO_COUNTING | {"fastmath": True}
+
+INLINED: dict[str, Any] = {"error_model": "numpy", "fastmath": True, "forceinline": True}
+"""For what an ``overload`` chooses when compiled."""
 
 
 def choose_cache(function: Callable[..., Any]) -> None:

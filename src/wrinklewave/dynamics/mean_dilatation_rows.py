@@ -1,4 +1,4 @@
-"""One row of fully integrated mean-dilatation quadrilaterals; the check on the one-point element.
+"""The fully integrated mean-dilatation quadrilateral; the check on the one-point element.
 
 Arguments as in :mod:`wrinklewave.dynamics.rows`, but ``memory`` holds, per Prony term, the components 11, 22, 12, 33
 of Gauss points 1 to 4, and the mean stress if the bulk relaxes.
@@ -6,7 +6,7 @@ of Gauss points 1 to 4, and the mean stress if the bulk relaxes.
 
 from __future__ import annotations
 
-from wrinklewave._jit import scalar, uintp, vector
+from wrinklewave._jit import scalar, uintp
 from wrinklewave.dynamics.elements.mean_dilatation import GAUSS, dot, point_gradients
 from wrinklewave.dynamics.elements.quadrilateral import (
     bulk_viscosity,
@@ -60,61 +60,58 @@ def _point(g, xi, eta, x, y, u, w, r, i, memory, terms, factors, mu):
     return bx, by, (P11, P12, P21, P22)
 
 
-@vector
-def mean_dilatation_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of elements ``start`` to ``stop`` of row ``j``; ``memory`` is brought to the next step."""
+@scalar
+def mean_dilatation_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """Forces of element ``i`` of row ``r`` (unsigned); ``memory`` is brought to the next step."""
     mu, K, linear, quadratic = moduli[0], moduli[1], moduli[2], moduli[3]
     stride = len(memory) // len(terms)
     bulk_relaxes = stride == 17
-    r = uintp(j)
-    s = r + ONE
-    for i in range(uintp(start), uintp(stop)):
-        k = i + ONE
-        X1, X2, X3, X4 = X[r, i], X[r, k], X[s, k], X[s, i]
-        Y1, Y2, Y3, Y4 = Y[r, i], Y[r, k], Y[s, k], Y[s, i]
-        u1, u2, u3, u4 = u[r, i], u[r, k], u[s, k], u[s, i]
-        w1, w2, w3, w4 = w[r, i], w[r, k], w[s, k], w[s, i]
+    k, s = i + ONE, r + ONE
+    X1, X2, X3, X4 = X[r, i], X[r, k], X[s, k], X[s, i]
+    Y1, Y2, Y3, Y4 = Y[r, i], Y[r, k], Y[s, k], Y[s, i]
+    u1, u2, u3, u4 = u[r, i], u[r, k], u[s, k], u[s, i]
+    w1, w2, w3, w4 = w[r, i], w[r, k], w[s, k], w[s, i]
 
-        X13, Y13, X24, Y24 = X1 - X3, Y1 - Y3, X2 - X4, Y2 - Y4
-        u13, w13, u24, w24 = u1 - u3, w1 - w3, u2 - u4, w2 - w4
-        x13, y13, x24, y24 = X13 + u13, Y13 + w13, X24 + u24, Y24 + w24
-        A = 0.5 * twice_area(X13, Y13, X24, Y24)
-        e = 0.5 * (X13 * w24 + u13 * Y24 + u13 * w24 - X24 * w13 - u24 * Y13 - u24 * w13) / A
-        rate = twice_area_rate(
-            x13,
-            y13,
-            x24,
-            y24,
-            vx[r, i] - vx[s, k],
-            vy[r, i] - vy[s, k],
-            vx[r, k] - vx[s, i],
-            vy[r, k] - vy[s, i],
-        )
-        rate /= twice_area(x13, y13, x24, y24)
-        p = K * e + bulk_viscosity(rate, squared_length(X13, Y13, X24, Y24, A), linear, quadratic)
-        if bulk_relaxes:
-            for m in range(len(terms)):
-                H = overstress(memory[stride * m + 16][r, i], factors[m, 3], e)
-                p += H
-                memory[stride * m + 16][r, i] = next_memory(H, factors[m, 1], factors[m, 4], e)
-        fx1, fy1, fx2, fy2 = 0.5 * p * y24, -0.5 * p * x24, -0.5 * p * y13, 0.5 * p * x13
-        fx3, fy3, fx4, fy4 = -fx1, -fy1, -fx2, -fy2
+    X13, Y13, X24, Y24 = X1 - X3, Y1 - Y3, X2 - X4, Y2 - Y4
+    u13, w13, u24, w24 = u1 - u3, w1 - w3, u2 - u4, w2 - w4
+    x13, y13, x24, y24 = X13 + u13, Y13 + w13, X24 + u24, Y24 + w24
+    A = 0.5 * twice_area(X13, Y13, X24, Y24)
+    e = 0.5 * (X13 * w24 + u13 * Y24 + u13 * w24 - X24 * w13 - u24 * Y13 - u24 * w13) / A
+    rate = twice_area_rate(
+        x13,
+        y13,
+        x24,
+        y24,
+        vx[r, i] - vx[s, k],
+        vy[r, i] - vy[s, k],
+        vx[r, k] - vx[s, i],
+        vy[r, k] - vy[s, i],
+    )
+    rate /= twice_area(x13, y13, x24, y24)
+    p = K * e + bulk_viscosity(rate, squared_length(X13, Y13, X24, Y24, A), linear, quadratic)
+    if bulk_relaxes:
+        for m in range(len(terms)):
+            H = overstress(memory[stride * m + 16][r, i], factors[m, 3], e)
+            p += H
+            memory[stride * m + 16][r, i] = next_memory(H, factors[m, 1], factors[m, 4], e)
+    fx1, fy1, fx2, fy2 = 0.5 * p * y24, -0.5 * p * x24, -0.5 * p * y13, 0.5 * p * x13
+    fx3, fy3, fx4, fy4 = -fx1, -fy1, -fx2, -fy2
 
-        x, y = (X1, X2, X3, X4), (Y1, Y2, Y3, Y4)
-        p, q = (u1, u2, u3, u4), (w1, w2, w3, w4)
-        bx1, by1, P1 = _point(0, -GAUSS, -GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
-        bx2, by2, P2 = _point(1, GAUSS, -GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
-        bx3, by3, P3 = _point(2, GAUSS, GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
-        bx4, by4, P4 = _point(3, -GAUSS, GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
-        bx, by, P = (bx1, bx2, bx3, bx4), (by1, by2, by3, by4), (P1, P2, P3, P4)
-        for g in range(4):
-            fx1 += bx[g][0] * P[g][0] + by[g][0] * P[g][1]
-            fy1 += bx[g][0] * P[g][2] + by[g][0] * P[g][3]
-            fx2 += bx[g][1] * P[g][0] + by[g][1] * P[g][1]
-            fy2 += bx[g][1] * P[g][2] + by[g][1] * P[g][3]
-            fx3 += bx[g][2] * P[g][0] + by[g][2] * P[g][1]
-            fy3 += bx[g][2] * P[g][2] + by[g][2] * P[g][3]
-            fx4 += bx[g][3] * P[g][0] + by[g][3] * P[g][1]
-            fy4 += bx[g][3] * P[g][2] + by[g][3] * P[g][3]
-        forces[0, k], forces[1, k], forces[2, k], forces[3, k] = fx1, fy1, fx2, fy2
-        forces[4, k], forces[5, k], forces[6, k], forces[7, k] = fx3, fy3, fx4, fy4
+    x, y = (X1, X2, X3, X4), (Y1, Y2, Y3, Y4)
+    p, q = (u1, u2, u3, u4), (w1, w2, w3, w4)
+    bx1, by1, P1 = _point(0, -GAUSS, -GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
+    bx2, by2, P2 = _point(1, GAUSS, -GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
+    bx3, by3, P3 = _point(2, GAUSS, GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
+    bx4, by4, P4 = _point(3, -GAUSS, GAUSS, x, y, p, q, r, i, memory, terms, factors, mu)
+    bx, by, P = (bx1, bx2, bx3, bx4), (by1, by2, by3, by4), (P1, P2, P3, P4)
+    for g in range(4):
+        fx1 += bx[g][0] * P[g][0] + by[g][0] * P[g][1]
+        fy1 += bx[g][0] * P[g][2] + by[g][0] * P[g][3]
+        fx2 += bx[g][1] * P[g][0] + by[g][1] * P[g][1]
+        fy2 += bx[g][1] * P[g][2] + by[g][1] * P[g][3]
+        fx3 += bx[g][2] * P[g][0] + by[g][2] * P[g][1]
+        fy3 += bx[g][2] * P[g][2] + by[g][2] * P[g][3]
+        fx4 += bx[g][3] * P[g][0] + by[g][3] * P[g][1]
+        fy4 += bx[g][3] * P[g][2] + by[g][3] * P[g][3]
+    forces[0][k], forces[1][k], forces[2][k], forces[3][k] = fx1, fy1, fx2, fy2
+    forces[4][k], forces[5][k], forces[6][k], forces[7][k] = fx3, fy3, fx4, fy4

@@ -1,4 +1,4 @@
-"""The innermost loops on the CPU: one row of elements, one row of nodes, in vector instructions.
+"""What the innermost loops do: an element, and a row of nodes.
 
 The mesh is a grid of quadrilaterals, so a row of elements reads two rows of nodes at neighbouring places: no
 connectivity, no gather. A row of elements writes the forces on its corners to a buffer of one row, and the nodes
@@ -9,7 +9,8 @@ Arrays: ``X, Y`` undeformed positions [m], ``u, w`` displacements [m], ``vx, vy`
 the components 11, 22, 12, 33, hourglass 1, hourglass 2, and mean stress if the bulk relaxes; ``terms`` a tuple whose
 length is the number of terms, known when the kernel is compiled so that its loop unrolls; ``factors`` [n_terms, 5]: b
 of the last step, a and b of the next for the shear, then both b for the bulk;
-``forces`` [8, n_element_columns + 2]: f1x, f1y, ... f4x, f4y, shifted by one column and zero at both ends.
+``forces`` [8, n_element_columns + 2] or as many arrays: f1x, f1y, ... f4x, f4y, shifted by one column and zero at both
+ends.
 """
 
 from __future__ import annotations
@@ -44,90 +45,85 @@ def differences(field, j, i):
     return opposite_differences(v1, v2, v3, v4)
 
 
-@vector
-def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of elements ``start`` to ``stop`` of row ``j`` of one-point quadrilaterals.
-
-    ``memory`` is brought to the next step.
+@scalar
+def one_point_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """Forces of element ``i`` of row ``r`` (unsigned), a one-point quadrilateral; ``memory`` goes to the next step.
 
     ``moduli``: long-term shear and bulk modulus [Pa], linear and quadratic bulk viscosity, hourglass factor.
     """
     mu, K, linear, quadratic, hourglass = moduli[0], moduli[1], moduli[2], moduli[3], moduli[4]
     stride = len(memory) // len(terms)
     bulk_relaxes = stride == 7
-    r = uintp(j)
-    s = r + ONE
-    for i in range(uintp(start), uintp(stop)):
-        k = i + ONE
-        x13, x24, hX = differences(X, r, i)
-        y13, y24, hY = differences(Y, r, i)
-        u13, u24, qx = differences(u, r, i)
-        w13, w24, qy = differences(w, r, i)
-        A2 = twice_area(x13, y13, x24, y24)
-        inverse = 1.0 / A2
-        rate = twice_area_rate(
-            x13 + u13,
-            y13 + w13,
-            x24 + u24,
-            y24 + w24,
-            vx[r, i] - vx[s, k],
-            vy[r, i] - vy[s, k],
-            vx[r, k] - vx[s, i],
-            vy[r, k] - vy[s, i],
-        )
-        G11, G12 = centre_gradient(x13, y13, x24, y24, inverse, u13, u24)
-        G21, G22 = centre_gradient(x13, y13, x24, y24, inverse, w13, w24)
-        qx -= hX * G11 + hY * G12
-        qy -= hX * G21 + hY * G22
+    k, s = i + ONE, r + ONE
+    x13, x24, hX = differences(X, r, i)
+    y13, y24, hY = differences(Y, r, i)
+    u13, u24, qx = differences(u, r, i)
+    w13, w24, qy = differences(w, r, i)
+    A2 = twice_area(x13, y13, x24, y24)
+    inverse = 1.0 / A2
+    rate = twice_area_rate(
+        x13 + u13,
+        y13 + w13,
+        x24 + u24,
+        y24 + w24,
+        vx[r, i] - vx[s, k],
+        vy[r, i] - vy[s, k],
+        vx[r, k] - vx[s, i],
+        vy[r, k] - vy[s, i],
+    )
+    G11, G12 = centre_gradient(x13, y13, x24, y24, inverse, u13, u24)
+    G21, G22 = centre_gradient(x13, y13, x24, y24, inverse, w13, w24)
+    qx -= hX * G11 + hY * G12
+    qy -= hX * G21 + hY * G22
 
-        F11, F22 = 1.0 + G11, 1.0 + G22
-        e = G11 + G22 + G11 * G22 - G12 * G21
-        J = 1.0 + e
-        root = inverse_cube_root(J)
-        J23 = root * root
-        Ji = J23 * root
-        Ji2 = Ji * Ji
-        C11, C22, C12 = right_cauchy_green(F11, G12, G21, F22)
-        s11, s22, s12, s33 = isochoric_shape(C11, C22, C12, Ji2)
+    F11, F22 = 1.0 + G11, 1.0 + G22
+    e = G11 + G22 + G11 * G22 - G12 * G21
+    J = 1.0 + e
+    root = inverse_cube_root(J)
+    J23 = root * root
+    Ji = J23 * root
+    Ji2 = Ji * Ji
+    C11, C22, C12 = right_cauchy_green(F11, G12, G21, F22)
+    s11, s22, s12, s33 = isochoric_shape(C11, C22, C12, Ji2)
 
-        q1, q2, Q1, Q2 = F11 * qx + G21 * qy, G12 * qx + F22 * qy, 0.0, 0.0
-        A11, A22, A12, A33, p = mu * s11, mu * s22, mu * s12, mu * s33, K * e
-        for m in range(len(terms)):
-            b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
-            H = overstress(memory[stride * m][r, i], b, s11)
-            A11 += H
-            memory[stride * m][r, i] = next_memory(H, a, b_next, s11)
-            H = overstress(memory[stride * m + 1][r, i], b, s22)
-            A22 += H
-            memory[stride * m + 1][r, i] = next_memory(H, a, b_next, s22)
-            H = overstress(memory[stride * m + 2][r, i], b, s12)
-            A12 += H
-            memory[stride * m + 2][r, i] = next_memory(H, a, b_next, s12)
-            H = overstress(memory[stride * m + 3][r, i], b, s33)
-            A33 += H
-            memory[stride * m + 3][r, i] = next_memory(H, a, b_next, s33)
-            H = overstress(memory[stride * m + 4][r, i], b, q1)
-            Q1 += H
-            memory[stride * m + 4][r, i] = next_memory(H, a, b_next, q1)
-            H = overstress(memory[stride * m + 5][r, i], b, q2)
-            Q2 += H
-            memory[stride * m + 5][r, i] = next_memory(H, a, b_next, q2)
-            if bulk_relaxes:
-                H = overstress(memory[stride * m + 6][r, i], factors[m, 3], e)
-                p += H
-                memory[stride * m + 6][r, i] = next_memory(H, a, factors[m, 4], e)
+    q1, q2, Q1, Q2 = F11 * qx + G21 * qy, G12 * qx + F22 * qy, 0.0, 0.0
+    A11, A22, A12, A33, p = mu * s11, mu * s22, mu * s12, mu * s33, K * e
+    for m in range(len(terms)):
+        b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
+        H = overstress(memory[stride * m][r, i], b, s11)
+        A11 += H
+        memory[stride * m][r, i] = next_memory(H, a, b_next, s11)
+        H = overstress(memory[stride * m + 1][r, i], b, s22)
+        A22 += H
+        memory[stride * m + 1][r, i] = next_memory(H, a, b_next, s22)
+        H = overstress(memory[stride * m + 2][r, i], b, s12)
+        A12 += H
+        memory[stride * m + 2][r, i] = next_memory(H, a, b_next, s12)
+        H = overstress(memory[stride * m + 3][r, i], b, s33)
+        A33 += H
+        memory[stride * m + 3][r, i] = next_memory(H, a, b_next, s33)
+        H = overstress(memory[stride * m + 4][r, i], b, q1)
+        Q1 += H
+        memory[stride * m + 4][r, i] = next_memory(H, a, b_next, q1)
+        H = overstress(memory[stride * m + 5][r, i], b, q2)
+        Q2 += H
+        memory[stride * m + 5][r, i] = next_memory(H, a, b_next, q2)
+        if bulk_relaxes:
+            H = overstress(memory[stride * m + 6][r, i], factors[m, 3], e)
+            p += H
+            memory[stride * m + 6][r, i] = next_memory(H, a, factors[m, 4], e)
 
-        L2 = squared_length(x13, y13, x24, y24, 0.5 * A2)
-        p += bulk_viscosity(rate * inverse * Ji, L2, linear, quadratic)
-        Qx, Qy = mu * qx + Ji * (F22 * Q1 - G21 * Q2), mu * qy + Ji * (F11 * Q2 - G12 * Q1)
-        P11, P12, P21, P22 = first_piola_kirchhoff(
-            F11, G12, G21, F22, A11, A22, A12, A33, C11, C22, C12, 0.5 * J23, Ji, 0.5 * p
-        )
-        stiffness = hourglass_stiffness(x13, y13, x24, y24, inverse, hourglass)
-        f1, f2, f3, f4 = nodal_forces(x13, y13, x24, y24, inverse, P11, P12, hX, hY, stiffness * Qx)
-        forces[0, k], forces[2, k], forces[4, k], forces[6, k] = f1, f2, f3, f4
-        f1, f2, f3, f4 = nodal_forces(x13, y13, x24, y24, inverse, P21, P22, hX, hY, stiffness * Qy)
-        forces[1, k], forces[3, k], forces[5, k], forces[7, k] = f1, f2, f3, f4
+    L2 = squared_length(x13, y13, x24, y24, 0.5 * A2)
+    p += bulk_viscosity(rate * inverse * Ji, L2, linear, quadratic)
+    Qx, Qy = mu * qx + Ji * (F22 * Q1 - G21 * Q2), mu * qy + Ji * (F11 * Q2 - G12 * Q1)
+    P11, P12, P21, P22 = first_piola_kirchhoff(
+        F11, G12, G21, F22, A11, A22, A12, A33, C11, C22, C12, 0.5 * J23, Ji, 0.5 * p
+    )
+    stiffness = hourglass_stiffness(x13, y13, x24, y24, inverse, hourglass)
+    f1, f2, f3, f4 = nodal_forces(x13, y13, x24, y24, inverse, P11, P12, hX, hY, stiffness * Qx)
+    forces[0][k], forces[2][k], forces[4][k], forces[6][k] = f1, f2, f3, f4
+    f1, f2, f3, f4 = nodal_forces(x13, y13, x24, y24, inverse, P21, P22, hX, hY, stiffness * Qy)
+    forces[1][k], forces[3][k], forces[5][k], forces[7][k] = f1, f2, f3, f4
 
 
 @vector

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from numba import config, cuda, float64
+from numba import config, cuda, float64, uintp
 
 from wrinklewave._jit import choose_cache
 from wrinklewave.dynamics.boundary import (
@@ -37,7 +37,7 @@ from wrinklewave.dynamics.energy import (
 )
 from wrinklewave.dynamics.fields import fields_run
 from wrinklewave.dynamics.stable_step import stable_step_run
-from wrinklewave.dynamics.step import element_row, move_row
+from wrinklewave.dynamics.step import element, move_row
 
 BLOCK = 256
 """Threads per block on a device; kernels work with fewer, if a power of two."""
@@ -62,7 +62,8 @@ def _elements(first, a, factors, layer, memory, terms, boundary):
         i = e - j * columns
         n = layer[j, i]
         b, moduli, forces = factors[n], a.moduli[n], a.forces[j]
-        element_row(j, i, i + 1, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, b, moduli, forces)
+        r, c = uintp(j), uintp(i)
+        element(r, c, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, b, moduli, forces)
     for n in range(first, n_edge_nodes(rows + 1, columns + 1), cuda.gridsize(1)):
         remember_node(n, a, boundary)
 
