@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from wrinklewave.experiments.impact_moments import EndTrack, find_moments, with_grazing_uncertainty
+from wrinklewave.experiments.impact_moments import EndTrack, find_moments, with_exposure_uncertainty
 
 RATE = 50e3
 CONTACT, STOP, REST, SPEED = 0.404e-3, 1.034e-3, 40.0, 2e5  # s, s, px, px/s
@@ -22,6 +22,7 @@ def impact(noise: float = 0.03, *, recoil: float = 60e3) -> EndTrack:
     end = np.where(time < CONTACT, REST, plate) + recoil * np.maximum(time - STOP, 0.0)
     touching = np.where((time >= CONTACT) & (time <= STOP), 1.0, 0.0)
     seen = plate > 4.0
+    gap = end - plate + np.where(touching == 1.0, 0.0, random.normal(0.0, noise, time.size))
     return EndTrack(
         time=time,
         column=end + random.normal(0.0, noise, time.size),
@@ -29,6 +30,8 @@ def impact(noise: float = 0.03, *, recoil: float = 60e3) -> EndTrack:
         row=np.zeros(time.size),
         striker=np.where(seen, plate + random.normal(0.0, noise, time.size), np.nan),
         striker_sigma=np.where(seen, noise, np.nan),
+        gap=np.where(seen, gap, np.nan),
+        gap_sigma=np.where(seen, np.where(touching == 1.0, 0.0, noise), np.nan),
         touching=np.where(seen, touching, np.nan),
         rest=REST,
     )
@@ -44,12 +47,30 @@ def test_moments_between_frames_are_found_to_a_small_part_of_the_frame_interval(
     assert found.separation.time == pytest.approx(STOP, abs=0.1 / RATE)
 
 
-def test_frames_with_a_gap_too_narrow_to_be_seen_say_that_they_are_uncertain() -> None:
+def test_a_gap_that_opens_slowly_and_closes_again_is_followed_along_its_curve() -> None:
+    """A parabola over 30 frames, up to 9 px wide."""
+    track, width = impact(), 30 / RATE
+    away = np.clip((track.time - STOP) / width, 0.0, 1.0)
+    gap = 36.0 * away * (1.0 - away)
+    touching = np.where(track.touching == 0.0, (track.time >= CONTACT) & (gap == 0.0), track.touching)
+    touching = np.where(np.isfinite(track.touching) & (track.time < CONTACT), 0.0, touching)
+    noise = np.random.default_rng(2).normal(0.0, 0.05, gap.size)
+    apart = (touching == 0.0) & (track.time > CONTACT)
+    seen = np.where(apart, gap + noise, np.where(track.time < CONTACT, track.gap, 0.0))
+    found = find_moments(
+        replace(track, touching=touching, gap=seen, gap_sigma=np.where(touching == 1.0, 0.0, 0.05))
+    )
+    for moment, true in ((found.separation, STOP), (found.recontact, STOP + width)):
+        assert abs(moment.time - true) < 0.15 / RATE
+        assert abs(moment.time - true) < 4.0 * moment.sigma < 0.5 / RATE
+
+
+def test_frames_that_may_have_been_exposed_while_the_faces_met_say_that_they_are_uncertain() -> None:
     track = impact()
-    touching = track.touching.copy()
-    touching[int(STOP * RATE) + 1] = 1.0  # the gap has opened, but is not seen yet
-    sigma = with_grazing_uncertainty(replace(track, touching=touching), find_moments(track)).sigma
-    assert np.flatnonzero(sigma > 0.2).tolist() == [21, int(STOP * RATE), int(STOP * RATE) + 1]
+    sigma = with_exposure_uncertainty(track, find_moments(track)).sigma
+    changed = np.flatnonzero(sigma > track.sigma).tolist()
+    assert changed == [round(CONTACT * RATE), round(STOP * RATE)]
+    assert sigma[changed[0]] == pytest.approx(0.125 * SPEED / RATE, rel=0.01)
 
 
 def test_a_given_contact_is_kept() -> None:

@@ -34,7 +34,7 @@ class FrameBlock:
     Attributes:
         frame: which frames these are, unreadable ones left out.
         rows, sigma, valid: the surface, [..., n_columns], as in ``Edge``.
-        end: fields of ``StruckEnd``, [..., 9].
+        end: fields of ``StruckEnd``, [..., 16].
         wires: column, sigma, lean and lean_sigma of what looks like a wire, [..., n_seen, 4], NaN after the last.
         wire_distance: rows from there to the surface.
         locking: sums over the block's frames, [3, n_bins], as in ``PixelLocking``.

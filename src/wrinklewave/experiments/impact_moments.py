@@ -1,4 +1,4 @@
-"""The moments of an impact: when the striker touches, when it has come to rest, when the sample leaves it."""
+"""The moments of an impact: when the striker touches, when it has come to rest, when the sample leaves and returns."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ from numpy.typing import NDArray
 from wrinklewave.imaging.arrays import Floats
 
 APPROACH_FRAMES = 10
-"""Frames before contact (and after separation) whose gap is continued to zero by a straight line."""
+"""Frames before contact (and after separation) whose gap is continued to zero by a line."""
+CURVED = 9.0
+"""Gain in chi squared from which that line is a parabola: three standard deviations. A line that misses the frames by
+so much is fitted to fewer of them."""
 FEWEST_FRAMES = 3
 BRIEFLY = 2
 """Frames apart that do not end a contact: a gap of a fraction of a pixel comes and goes with the noise."""
@@ -22,16 +25,16 @@ NEARLY = 0.99
 """Share of its way after which a striker counts as stopped: the last part of a gradual stop has no sharp end."""
 
 
-GRAZING = 0.3
-"""Pixels by which struck end and striker may be off while the gap between them is too narrow to be seen."""
-
-
 @dataclass(frozen=True)
 class Moment:
-    """A time and its standard uncertainty [s]; NaN where it does not happen or cannot be known."""
+    """A time and its standard uncertainty [s]; NaN where it does not happen or cannot be known.
+
+    ``rate`` is that of the gap at this moment [px/s]; 0 if there is none or it cannot be known.
+    """
 
     time: float
     sigma: float
+    rate: float = 0.0
 
 
 NEVER = Moment(float("nan"), float("nan"))
@@ -45,12 +48,14 @@ class Impact:
         contact: when the striker touches the sample.
         stop: when the striker has come to rest, that is, has gone 99 % of its way.
         separation: when the struck end leaves the striker.
+        recontact: when it meets the striker again.
         stop_distance: way of the striker from contact to rest [px]; NaN if it is not seen to rest.
     """
 
     contact: Moment
     stop: Moment
     separation: Moment
+    recontact: Moment
     stop_distance: float
 
 
@@ -63,6 +68,7 @@ class EndTrack:
         column, sigma: of the struck end at the surface, and its standard uncertainty; NaN where not seen.
         row: of the surface there, to a pixel or so.
         striker, striker_sigma: the striker's face; NaN where there is none in sight.
+        gap, gap_sigma: between the two, zero where the striker touches; NaN where there is none in sight.
         touching: 1 where the striker touches, 0 where it does not, NaN where it is out of sight.
         rest: column of the struck end at rest.
     """
@@ -73,6 +79,8 @@ class EndTrack:
     row: Floats
     striker: Floats
     striker_sigma: Floats
+    gap: Floats
+    gap_sigma: Floats
     touching: Floats
     rest: float
 
@@ -80,33 +88,38 @@ class EndTrack:
 def find_moments(track: EndTrack, contact: float | None = None) -> Impact:
     """Find the moments of an impact; ``contact`` [s] is its time if that is known."""
     first, stop = _contact_frames(track)
-    if contact is not None:
-        touch = Moment(contact, 0.0)
-    elif first is not None:
-        touch = _gap_zero(track, np.arange(max(first - APPROACH_FRAMES, 0), first), (first - 1, first))
-    else:
-        touch = _first_motion(track)
-    separation = NEVER
+    touch = Moment(contact, 0.0) if contact is not None else NEVER
+    if contact is None:
+        touch = _first_motion(track) if first is None else _closing(track, 0, first)
+    separation = recontact = NEVER
     if stop is not None:
-        after = np.arange(stop, min(stop + APPROACH_FRAMES, track.time.size))
-        separation = _gap_zero(track, after, (stop - 1, stop))
+        again = np.flatnonzero(track.touching[stop:] == 1.0) + stop
+        last = int(again[0]) if again.size else track.time.size
+        separation = _gap_zero(track, np.arange(stop, min(stop + APPROACH_FRAMES, last)), (stop - 1, stop))
+        recontact = _closing(track, stop, last) if again.size else NEVER
     halt, distance = _stop(track, touch)
-    return Impact(touch, halt, separation, distance)
+    return Impact(touch, halt, separation, recontact, distance)
 
 
-def with_grazing_uncertainty(track: EndTrack, impact: Impact) -> EndTrack:
-    """The same with the uncertainty of frames in which the gap is about to close, or has just opened.
+def with_exposure_uncertainty(track: EndTrack, impact: Impact) -> EndTrack:
+    """The same with the uncertainty of frames during whose exposure the faces may meet or part.
 
-    A gap narrower than the blur looks like a single edge in another place: no frame by itself can tell them apart.
+    Such a frame is a mixture. How long it was exposed is not known: at most for the whole interval, over which a gap
+    that opens in its middle is an eighth of rate times interval wide on average.
     """
     interval = float(np.median(np.diff(track.time)))
-    near = np.zeros(track.time.size, bool)
-    for moment in (impact.contact, impact.separation):
-        near |= np.abs(track.time - moment.time) < interval
-    extra = np.where(near & (track.touching == 1.0), GRAZING, 0.0)
+    extra = np.zeros(track.time.size)
+    for moment in (impact.contact, impact.separation, impact.recontact):
+        near = np.abs(track.time - moment.time) < 0.5 * interval
+        extra[near] = 0.125 * abs(moment.rate) * interval
     return replace(
         track, sigma=np.hypot(track.sigma, extra), striker_sigma=np.hypot(track.striker_sigma, extra)
     )
+
+
+def _closing(track: EndTrack, after: int, first: int) -> Moment:
+    """When the gap closes that was open from frame ``after`` on, and is not in frame ``first`` any more."""
+    return _gap_zero(track, np.arange(max(first - APPROACH_FRAMES, after), first), (first - 1, first))
 
 
 def _contact_frames(track: EndTrack) -> tuple[int | None, int | None]:
@@ -124,30 +137,54 @@ def _contact_frames(track: EndTrack) -> tuple[int | None, int | None]:
 
 
 def _gap_zero(track: EndTrack, frames: NDArray[np.intp], bracket: tuple[int, int]) -> Moment:
-    """When the gap is zero by a straight line through some frames, near the frames of ``bracket``.
+    """When the gap is zero by a line through some frames, near the frames of ``bracket``.
 
     If the line does not lead there, the middle between the two.
     """
     early, late = track.time[max(bracket[0], 0)], track.time[bracket[1]]
     interval = float(np.median(np.diff(track.time)))
     middle = Moment(float(0.5 * (early + late)), float(max(late - early, interval) / np.sqrt(12.0)))
-    end = np.where(np.isfinite(track.column), track.column, track.rest)
-    gap = (end - track.striker)[frames]
-    known = np.isfinite(gap) & (track.touching[frames] == 0.0)
-    if known.sum() < FEWEST_FRAMES:
+    known = frames[np.isfinite(track.gap[frames]) & (track.touching[frames] == 0.0)]
+    if known.size < FEWEST_FRAMES:
         return middle
-    time, gap = track.time[frames][known], gap[known]
-    (slope, level), covariance = np.polyfit(time - early, gap, 1, cov="unscaled")
-    if slope == 0.0:
+    nearest = known[np.abs(known - bracket[1]).argsort()]
+    for n in range(nearest.size, FEWEST_FRAMES - 1, -1):
+        line, covariance, spread = _line(track, nearest[:n], early, interval)
+        if spread < CURVED:
+            break
+    roots = np.roots(line)
+    roots = roots[np.isreal(roots)].real
+    share = (late - early) / interval
+    near = roots[(roots >= -1.0) & (roots <= share + 1.0)]
+    if near.size == 0:
         return middle
-    residual = gap - level - slope * (time - early)
-    spread = np.sqrt(residual @ residual / max(gap.size - 2, 1))
-    zero = -level / slope
-    gradient = np.array([zero, 1.0]) / slope
-    sigma = float(spread * np.sqrt(gradient @ covariance @ gradient))
-    if not -interval <= zero <= late - early + interval:
-        return middle
-    return Moment(float(early + zero), sigma)
+    zero = float(near[np.abs(near - 0.5 * share).argmin()])
+    rate = float(np.polyval(np.polyder(line), zero))
+    gradient = zero ** np.arange(line.size - 1, -1, -1) / rate
+    sigma = float(np.sqrt(spread * gradient @ covariance @ gradient))
+    return Moment(float(early + zero * interval), sigma * interval, rate / interval)
+
+
+def _line(
+    track: EndTrack, frames: NDArray[np.intp], early: float, interval: float
+) -> tuple[Floats, Floats, float]:
+    """Straight line through the gap in some frames, or a parabola where that is much better.
+
+    Returns:
+        Coefficients over (time - early)/interval, their covariance, and chi squared per degree of freedom, at least 1.
+    """
+    at, gap, weight = (
+        (track.time[frames] - early) / interval,
+        track.gap[frames],
+        1.0 / track.gap_sigma[frames],
+    )
+    fits = []
+    for degree in (1, 2) if frames.size > FEWEST_FRAMES + 1 else (1,):
+        line, covariance = np.polyfit(at, gap, degree, w=weight, cov="unscaled")
+        misfit = float(np.sum((weight * (gap - np.polyval(line, at))) ** 2))
+        fits.append((line, covariance, misfit))
+    line, covariance, misfit = fits[-1] if fits[0][2] - fits[-1][2] > CURVED else fits[0]
+    return line, covariance, max(misfit / (frames.size - line.size), 1.0)
 
 
 def _first_motion(track: EndTrack) -> Moment:

@@ -20,7 +20,7 @@ from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.environment import processor
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.frame_blocks import BlockStore, FrameBlock, block_bounds, measure_block
-from wrinklewave.experiments.impact_moments import find_moments, with_grazing_uncertainty
+from wrinklewave.experiments.impact_moments import find_moments, with_exposure_uncertainty
 from wrinklewave.experiments.interruption import Outcome, interruptible
 from wrinklewave.experiments.measured_surface import (
     end_track,
@@ -254,7 +254,7 @@ def _evaluate(
             expected="an impact within the frames used",
             cure='give it, as in time = "1.2 ms" on the recording\'s clock, or check video.frames',
         )
-    track = with_grazing_uncertainty(track, impact)
+    track = with_exposure_uncertainty(track, impact)
     tracks = write_surface(
         folder.surface,
         blocks=blocks(),

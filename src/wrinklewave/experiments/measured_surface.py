@@ -17,6 +17,7 @@ from wrinklewave.imaging.arrays import Flags, Floats
 from wrinklewave.imaging.boundary import StruckEnd
 from wrinklewave.imaging.calibration import PixelMap
 from wrinklewave.imaging.camera.curves import interpolate
+from wrinklewave.imaging.contact import touching_frames
 from wrinklewave.imaging.edges.locking import PixelLocking
 from wrinklewave.imaging.tracks import WireTracks, smooth_in_time, track_wires
 from wrinklewave.imaging.wires import WireLook, WireSightings, bridged
@@ -25,6 +26,11 @@ from wrinklewave.surface import SurfaceFile
 WIDEST_BRIDGE = 2.5
 """Gaps in the surface are bridged up to so many resolutions, and NaN beyond."""
 FEWEST_COLUMNS = 4
+CORNER_COLUMNS = 12
+"""Columns of the surface from which it is continued to the corner of the struck end."""
+CORNER_FRAMES = 3
+CORNER_ROW = 1.0
+"""Standard uncertainty of the corner's row [px]: in a tilted image it moves the end along the sample."""
 
 
 @dataclass(frozen=True)
@@ -56,30 +62,67 @@ def frame_series(blocks: Iterable[FrameBlock]) -> FrameSeries:
     locking = PixelLocking.none()
     for block in blocks:
         seen = block.valid.sum(axis=1) / np.maximum(np.isfinite(block.rows).sum(axis=1), 1)
-        kept.append((block.frame, block.end, block.contrast, block.noise, seen))
+        kept.append((block.frame, _with_corners(block), block.contrast, block.noise, seen))
         sightings += block.sightings
         locking = locking + block.pixel_locking
     frame, end, contrast, noise, seen = (np.concatenate(parts) for parts in zip(*kept, strict=True))
     fields = dict(zip(StruckEnd._fields, end.T, strict=True))
+    fields["corner_row"] = _smooth_rows(fields["corner_row"])
     return FrameSeries(frame, fields, sightings, locking, contrast, noise, seen)
 
 
+def _with_corners(block: FrameBlock) -> Floats:
+    """``block.end`` with the row of the corner where a cubic through the surface's first columns leads to it."""
+    end = block.end.copy()
+    column, touch, corner = (StruckEnd._fields.index(name) for name in ("column", "touch", "corner_row"))
+    for one, rows, valid in zip(end, block.rows, block.valid, strict=True):
+        at = one[column] if np.isfinite(one[column]) else one[touch]
+        known = np.flatnonzero(valid & (np.arange(valid.size) > at))[:CORNER_COLUMNS]
+        if known.size == CORNER_COLUMNS and known[0] - at < CORNER_COLUMNS:
+            one[corner] = np.polyfit(known - at, rows[known], 3)[-1]
+    return end
+
+
+def _smooth_rows(rows: Floats) -> Floats:
+    """Rows with less noise: parabolas through the frames within ``CORNER_FRAMES`` of each."""
+    known, smooth = np.flatnonzero(np.isfinite(rows)), rows.copy()
+    for frame in known:
+        near = known[np.abs(known - frame) <= CORNER_FRAMES]
+        if near.size > 3:
+            smooth[frame] = np.polyfit(near - frame, rows[near], 2)[-1]
+    return smooth
+
+
 def end_track(series: FrameSeries, time: Floats, n_undeformed: int, appearance: Appearance) -> EndTrack:
-    """The struck end at the surface, followed along its inclined face from where it is measured."""
+    """Struck end and striker at the surface, followed along their faces from where they are measured."""
     end = series.end
-    slope, slope_sigma = smooth_in_time(end["slope"][:, None], end["slope_sigma"][:, None])
+    touching = touching_frames(end["gain"])
+    touches = touching == 1.0
+    column, sigma, slope, slope_sigma = (
+        np.where(touches, end[there], end[apart])
+        for there, apart in (
+            ("touch", "column"),
+            ("touch_sigma", "sigma"),
+            ("touch_slope", "slope"),
+            ("touch_slope_sigma", "slope_sigma"),
+        )
+    )
+    slope, slope_sigma = (each[:, 0] for each in smooth_in_time(slope[:, None], slope_sigma[:, None]))
     up = end["corner_row"] - end["row"]
-    column = end["column"] + slope[:, 0] * up
+    up_striker = end["corner_row"] - end["striker_row"]
+    column, sigma = column + slope * up, np.hypot(sigma, slope_sigma * up)
     at_rest = column[series.frame < n_undeformed]
     known = at_rest[np.isfinite(at_rest)]
     return EndTrack(
         time=time,
         column=column,
-        sigma=np.hypot(end["sigma"], slope_sigma[:, 0] * up),
+        sigma=sigma,
         row=end["corner_row"],
-        striker=end["striker"],
-        striker_sigma=end["striker_sigma"],
-        touching=end["contact"],
+        striker=np.where(touches, column, end["striker"] + slope * up_striker),
+        striker_sigma=np.where(touches, sigma, np.hypot(end["striker_sigma"], slope_sigma * up_striker)),
+        gap=np.where(touches, 0.0, end["gap"]),
+        gap_sigma=np.where(touches, 0.0, end["gap_sigma"]),
+        touching=touching,
         rest=float(known.mean()) if known.size else appearance.struck_end,
     )
 
@@ -162,7 +205,7 @@ def track_columns(
     columns = {
         "time_s": time,
         "x_boundary_m": pixels.to_metres(track.column, track.row)[0],
-        "x_boundary_sigma_m": pixel * track.sigma,
+        "x_boundary_sigma_m": pixel * np.hypot(track.sigma, CORNER_ROW * np.sin(pixels.tilt)),
         "x_striker_m": pixels.to_metres(track.striker, track.row)[0],
         "x_striker_sigma_m": pixel * track.striker_sigma,
         "striker_touches": track.touching,

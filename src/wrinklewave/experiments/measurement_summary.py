@@ -80,6 +80,8 @@ def measurement_summary(
         "striker_stop_sigma_s": impact.stop.sigma,
         "striker_separation_time_s": impact.separation.time - impact.contact.time,
         "striker_separation_sigma_s": impact.separation.sigma,
+        "striker_recontact_time_s": impact.recontact.time - impact.contact.time,
+        "striker_recontact_sigma_s": impact.recontact.sigma,
         "striker_stop_distance_m": impact.stop_distance * pixel,
         "striker_velocity_m_per_s": _velocity(track, impact) * pixel,
         "pixel_size_m": pixel,

@@ -18,8 +18,8 @@ from wrinklewave.imaging.edges import Edge, EdgeFinder, Optics
 from wrinklewave.imaging.edges.coarse import coarse_edge, step_contrast
 from wrinklewave.imaging.edges.levels import Levels, find_levels
 from wrinklewave.imaging.edges.profile import blurred_step
+from wrinklewave.imaging.faces import END, fit_faces
 from wrinklewave.imaging.frames import Image
-from wrinklewave.imaging.steps import fit_steps
 from wrinklewave.imaging.strips import Greys, strip_mean, strip_shares
 
 STRIP_ROWS = 48
@@ -203,11 +203,9 @@ def _refined_end(profile: Floats, column: int) -> float:
     """Position of a step near ``column`` to a fraction of a pixel."""
     first, last = max(column - 3 * _END_SPAN, 0), min(column + 3 * _END_SPAN, profile.size)
     window = profile[first:last]
-    left, right = np.median(window[:_END_SPAN]), np.median(window[-_END_SPAN:])
-    fit = fit_steps(
-        window, first, np.array([column - 0.5]), np.array([right - left]), float(left), _FIRST_BLUR
-    )
-    return float(fit.positions[0]) if np.isfinite(fit.positions[0]) else column - 0.5
+    start, only_end = np.array([column - 0.5, 0.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0])
+    fit = fit_faces(window[None, :], first, np.zeros(1), start, False, only_end, _FIRST_BLUR, 1.0)
+    return float(fit.at[END]) if np.isfinite(fit.at[END]) else column - 0.5
 
 
 def _columns(struck: float, held: float, n_columns: int, *, margin: float) -> tuple[int, int]:

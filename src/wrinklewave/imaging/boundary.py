@@ -1,9 +1,9 @@
 """The struck end of the sample and the face of the striker in one frame.
 
-Both are steps along the row. A strip deep in the body shows them roughly, and whether the striker touches: one step
-(striker, sample) in contact, two (striker, gap, sample) apart. Then one step is fitted to each of four strips close
-below the surface's corner, whatever stands beside the sample there; they tell how the end is inclined, so that it
-can be followed up to the surface.
+A strip deep in the body shows both roughly. Then both are fitted together, as straight faces across four strips close
+below the surface's corner, once with a gap between them and once without: a frame by itself does not always tell
+which is the case. Where the gap is wide, or the sample's corner has risen above the striker, the end is seen alone in
+these strips, and the striker in the deep one.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from wrinklewave._jit import allocating
 from wrinklewave.imaging.appearance import STRIP_ROWS, Appearance
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
-from wrinklewave.imaging.steps import Steps, fit_steps
+from wrinklewave.imaging.faces import END, GAP, SLOPE, SPREAD, Faces, fit_faces, gap_of_square
 from wrinklewave.imaging.strips import Greys, strip_shares
 
 _STRIPS = 4  # depths
@@ -23,43 +23,43 @@ _FACE_ROWS = 64  # of all strips together
 _RUN = 3  # columns unlike the sample that end it
 _END_BLURS = 2.0  # left of the end, over which it passes through the striker's grey by itself
 _REACH = 4.0  # blurs that a step reaches to either side
-_MARGIN = 4  # columns more that are fitted
-_LEVEL_COLUMNS = 10  # columns that tell the level beside a step
+_LEVEL_COLUMNS = 14  # columns beyond, that tell the levels
 _NO_PLATE = 0.15  # shares of the contrast by which a plate differs from the background
-_GAP_CERTAIN = 16.0  # gain in chi squared from which a gap is believed: four standard deviations
+_STRAIGHT = 4.0  # blurs: of a wider gap it is seen whether the faces are parallel
 
 
 class StruckEnd(NamedTuple):
-    """Struck end and striker in a frame [px]; NaN where not seen.
+    """Struck end and striker in a frame [px], in the middle of strips; NaN where not seen.
 
     Attributes:
-        column, sigma: the struck end in the middle of the strips below the corner, and its standard uncertainty.
+        column, sigma: the struck end if there is a gap, or no striker in sight, and its standard uncertainty.
+        slope, slope_sigma: columns per row of the end's face then, and its standard uncertainty.
+        striker, striker_sigma: the striker's face if there is a gap, and its standard uncertainty.
+        gap, gap_sigma: between the two, and its standard uncertainty.
+        touch, touch_sigma: both faces if there is no gap, and their standard uncertainty.
+        touch_slope, touch_slope_sigma: columns per row of the faces then, and its standard uncertainty.
+        gain: by how much chi squared is smaller with a gap than without.
         row: middle of the strips.
+        striker_row: middle of those that show the striker.
         corner_row: where the surface ends, roughly.
-        slope, slope_sigma: columns per row of the end's face, and its standard uncertainty.
-        striker, striker_sigma: the striker's face, and its standard uncertainty.
-        contact: 1 if the striker touches, 0 if not, NaN if no striker is in sight.
     """
 
     column: float
     sigma: float
-    row: float
-    corner_row: float
     slope: float
     slope_sigma: float
     striker: float
     striker_sigma: float
-    contact: float
-
-
-class _Faces(NamedTuple):
-    """Struck end and striker's face in the deep strip, with their standard uncertainties; NaN where not seen."""
-
-    end: float
-    end_sigma: float
-    striker: float
-    striker_sigma: float
-    contact: float
+    gap: float
+    gap_sigma: float
+    touch: float
+    touch_sigma: float
+    touch_slope: float
+    touch_slope_sigma: float
+    gain: float
+    row: float
+    striker_row: float
+    corner_row: float
 
 
 class _View(NamedTuple):
@@ -90,38 +90,124 @@ def find_struck_end(image: Pixels, coarse: Floats, appearance: Appearance) -> St
     return StruckEnd(*_find(image, coarse, appearance.greys, appearance.strip_depth, view))
 
 
+_APART, _STRIKER, _GAP, _TOUCH, _GAIN, _ROW, _STRIKER_ROW, _CORNER_ROW = 0, 4, 6, 8, 12, 13, 14, 15
+"""Where in the fields of ``StruckEnd`` something begins: four of the end apart and touching, two of striker and gap."""
+
+
 @allocating
 def _find(image: Pixels, coarse: Floats, greys: Greys, strip_depth: float, view: _View) -> Floats:
     """Fields of ``StruckEnd``."""
-    found = np.full(9, np.nan)
+    found = np.full(_CORNER_ROW + 1, np.nan)
     n_columns = image.shape[1]
     top = greys.row + strip_depth + greys.slope * np.arange(n_columns)
     body = strip_shares(image, top, STRIP_ROWS, greys)
     rough = _rough_end(body, view)
     if not np.isfinite(rough):
         return found
-    faces = _faces(body, 1.0 / view.contrast_to_noise / np.sqrt(STRIP_ROWS), rough, view)
+    face = _rough_face(body, rough - _END_BLURS * view.blur, view.striker)
+    in_sight = face > view.clearance
     beside = coarse[int(rough) + 2 : int(rough + _REACH * view.blur) + 2 * _LEVEL_COLUMNS + 2]
-    if beside.size == 0 or not np.isfinite(faces.end):
+    if beside.size == 0:
         return found
     uppermost = beside.max() + 3.5 * view.blur + 2.0
     n_rows = min(_FACE_ROWS, int(image.shape[0] - uppermost)) // _STRIPS
     if n_rows < 1:
         return found
-    sigma = 1.0 / view.contrast_to_noise / np.sqrt(n_rows)
-    rows, columns, sigmas = np.empty(_STRIPS), np.empty(_STRIPS), np.empty(_STRIPS)
-    for k in range(_STRIPS):
-        strip = strip_shares(image, np.full(n_columns, uppermost + k * n_rows), n_rows, greys)
-        rows[k] = uppermost + n_rows * (k + 0.5) - 0.5
-        columns[k], sigmas[k] = _end_in_strip(strip, sigma, faces, view)
-    column, column_sigma, slope, slope_sigma = _line(rows, columns, sigmas)
-    found[0], found[1], found[2], found[3] = column, column_sigma, rows.mean(), beside[0]
-    found[4], found[5] = slope, slope_sigma
-    touches = faces.contact == 1.0
-    found[6] = column if touches else faces.striker
-    found[7] = column_sigma if touches else faces.striker_sigma
-    found[8] = faces.contact
+    first, last = _window(face if in_sight else rough, rough, view.blur, n_columns)
+    strips, rows = _strips(image, uppermost, n_rows, first, last, greys), n_rows * (np.arange(_STRIPS) - 1.5)
+    found[_ROW] = uppermost + 0.5 * (_STRIPS * n_rows - 1)
+    found[_STRIKER_ROW], found[_CORNER_ROW] = found[_ROW], beside[0]
+    noise, reach = 1.0 / view.contrast_to_noise, _REACH * view.blur
+    sigma, start = noise / np.sqrt(n_rows), np.array([rough, 0.0, rough - face, 0.0])
+    narrow = in_sight and rough - face < 2.0 * reach
+    if narrow and _plate_beside(strips[_STRIPS - 1], first, face, view.blur):
+        _both(strips, first, rows, start, view.blur, sigma, found)
+        return found
+    if in_sight:
+        deep = body[first:last].copy().reshape((1, last - first))
+        _both(deep, first, np.zeros(1), start, view.blur, noise / np.sqrt(STRIP_ROWS), found)
+        found[_STRIKER_ROW] = greys.row + greys.slope * rough + strip_depth + 0.5 * (STRIP_ROWS - 1)
+    alone = max(first, int(rough - reach) - _LEVEL_COLUMNS)
+    if in_sight and not narrow:
+        alone = max(alone, int(face + reach))
+    strips = np.ascontiguousarray(strips[:, alone - first :])
+    _keep(fit_faces(strips, alone, rows, start, False, _LINE, view.blur, sigma), _APART, found)
+    found[_TOUCH : _TOUCH + 4] = found[_APART : _APART + 4]
     return found
+
+
+@allocating
+def _strips(image: Pixels, top: float, n_rows: int, first: int, last: int, greys: Greys) -> Floats:
+    """Shares of some columns in the strips from ``top`` downwards."""
+    strips, tops = np.empty((_STRIPS, last - first)), np.full(image.shape[1], np.nan)
+    for k in range(_STRIPS):
+        tops[first:last] = top + k * n_rows
+        strips[k] = strip_shares(image, tops, n_rows, greys)[first:last]
+    return strips
+
+
+_LINE = np.array([1.0, 1.0, 0.0, 0.0])
+"""Only END and SLOPE are free."""
+
+
+@allocating
+def _both(
+    strips: Floats, first: int, rows: Floats, start: Floats, blur: float, sigma: float, found: Floats
+) -> None:
+    """End and striker with a gap and without, into the fields of ``StruckEnd``."""
+    free = np.ones(4)
+    free[SPREAD] = 0.0
+    free[SLOPE] = 1.0 if rows.size > 1 else 0.0
+    without = np.inf
+    if start[GAP] < 2.0 * _REACH * blur:
+        touch = fit_faces(strips, first, rows, start, False, free, blur, sigma)
+        if np.isfinite(touch.at[END]):
+            _keep(touch, _TOUCH, found)
+            without = touch.misfit
+    apart = fit_faces(strips, first, rows, start, True, free, blur, sigma)
+    if rows.size > 1 and apart.at[GAP] > _STRAIGHT * blur:
+        free[SPREAD] = 1.0
+        apart = fit_faces(strips, first, rows, apart.at, True, free, blur, sigma)
+    if np.isfinite(apart.at[END]):
+        _keep_gap(apart, found)
+        found[_GAIN] = without - apart.misfit
+    elif np.isfinite(without):
+        found[_GAIN] = 0.0
+
+
+@allocating
+def _keep(fit: Faces, there: int, found: Floats) -> None:
+    """The end and its slope, each with its standard uncertainty."""
+    found[there], found[there + 1] = fit.at[END], np.sqrt(fit.covariance[END, END])
+    found[there + 2], found[there + 3] = fit.at[SLOPE], np.sqrt(fit.covariance[SLOPE, SLOPE])
+
+
+@allocating
+def _keep_gap(fit: Faces, found: Floats) -> None:
+    """Both faces and the gap, which is not negative, each with its standard uncertainty."""
+    _keep(fit, _APART, found)
+    C = fit.covariance
+    gap, sigma = gap_of_square(fit.square, 2.0 * fit.at[GAP] * np.sqrt(C[GAP, GAP]))
+    by_gap = C[END, GAP] / C[GAP, GAP]  # how the end follows from the gap, all else fitted
+    rest = C[END, END] - by_gap * C[END, GAP]
+    end = fit.at[END] + by_gap * (gap - fit.at[GAP])
+    found[_APART], found[_APART + 1] = end, np.sqrt(rest + (by_gap * sigma) ** 2)
+    found[_STRIKER], found[_STRIKER + 1] = end - gap, np.sqrt(rest + ((by_gap - 1.0) * sigma) ** 2)
+    found[_GAP], found[_GAP + 1] = gap, sigma
+
+
+@allocating
+def _plate_beside(strip: Floats, first: int, face: float, blur: float) -> bool:
+    """Whether there is a striker left of its face in a strip, not only deeper in the image."""
+    stop = max(int(face - first - _REACH * blur), 1)
+    return abs(strip[max(stop - _LEVEL_COLUMNS, 0) : stop].mean()) > _NO_PLATE
+
+
+@allocating
+def _window(face: float, end: float, blur: float, n_columns: int) -> tuple[int, int]:
+    """First column that is fitted, and one past the last."""
+    reach = _REACH * blur + _LEVEL_COLUMNS
+    return max(int(face - reach), 0), min(int(end + reach) + 2, n_columns)
 
 
 @allocating
@@ -131,112 +217,6 @@ def _rough_end(body: Floats, view: _View) -> float:
     if np.isfinite(view.striker):
         limit = 0.5 * min(1.0, abs(1.0 - view.striker))
     return _last_run(~(np.abs(body[: view.last + 1] - 1.0) < limit))
-
-
-@allocating
-def _faces(body: Floats, sigma: float, rough: float, view: _View) -> _Faces:
-    """Struck end and striker in the strip of the body, whose columns have the noise ``sigma``."""
-    reach = _REACH * view.blur
-    face = _rough_face(body, rough - _END_BLURS * view.blur, view.striker)
-    if not face > view.clearance:
-        end, end_sigma = _step(body, rough, view.blur, sigma)
-        return _Faces(end, end_sigma, np.nan, np.nan, np.nan)
-    if rough - face > 2.0 * reach + 2 * _LEVEL_COLUMNS:
-        end, end_sigma = _step(body, rough, view.blur, sigma)
-        front, front_sigma = _step(body, face, view.blur, sigma)
-        return _Faces(end, end_sigma, front, front_sigma, 0.0)
-    plate, sample = _level_left(body, face - reach), _level_right(body, rough + reach)
-    first, window = _window(body, face, rough, view.blur)
-    heights = np.array([-plate, sample])
-    touching = fit_steps(window, first, np.array([rough]), np.array([sample - plate]), plate, view.blur)
-    apart = fit_steps(window, first, np.array([min(face, rough - 1.0), rough]), heights, plate, view.blur)
-    gap = apart.positions[1] - apart.positions[0]
-    if not (gap > 0.0 and touching.misfit - apart.misfit > _GAP_CERTAIN * sigma**2):
-        end, end_sigma = _certain(touching, 0, sample - plate, sigma)
-        return _Faces(end, end_sigma, end, end_sigma, 1.0)
-    return _Faces(
-        apart.positions[1],
-        sigma * np.sqrt(apart.covariance[1, 1]),
-        apart.positions[0],
-        sigma * np.sqrt(apart.covariance[0, 0]),
-        0.0,
-    )
-
-
-@allocating
-def _end_in_strip(body: Floats, sigma: float, faces: _Faces, view: _View) -> tuple[float, float]:
-    """Struck end in a strip near the corner: the last step before the sample."""
-    reach = _REACH * view.blur
-    plate = _level_left(body, faces.striker - reach) if faces.contact == 0.0 else 0.0
-    if abs(plate) < _NO_PLATE or faces.end - faces.striker > 2.0 * reach + 2 * _LEVEL_COLUMNS:
-        return _step(body, faces.end, view.blur, sigma)
-    first, window = _window(body, faces.striker, faces.end, view.blur)
-    heights = np.array([-plate, _level_right(body, faces.end + reach)])
-    apart = fit_steps(window, first, np.array([faces.striker, faces.end]), heights, plate, view.blur)
-    return _certain(apart, 1, heights[1], sigma)
-
-
-@allocating
-def _line(rows: Floats, columns: Floats, sigmas: Floats) -> tuple[float, float, float, float]:
-    """Column in the middle of the rows and slope of the line through the strips, with standard uncertainties."""
-    s0, s1, s2, c0, c1, n = 0.0, 0.0, 0.0, 0.0, 0.0, 0
-    middle = rows.mean()
-    for k in range(rows.size):
-        if np.isfinite(columns[k]) and np.isfinite(sigmas[k]):
-            weight, away = 1.0 / sigmas[k] ** 2, rows[k] - middle
-            s0 += weight
-            s1 += weight * away
-            s2 += weight * away * away
-            c0 += weight * columns[k]
-            c1 += weight * away * columns[k]
-            n += 1
-    if n < 2:
-        return np.nan, np.nan, np.nan, np.nan
-    determinant = s0 * s2 - s1 * s1
-    column, slope = (s2 * c0 - s1 * c1) / determinant, (s0 * c1 - s1 * c0) / determinant
-    return column, np.sqrt(s2 / determinant), slope, np.sqrt(s0 / determinant)
-
-
-@allocating
-def _step(body: Floats, column: float, blur: float, sigma: float) -> tuple[float, float]:
-    """One step near ``column`` between the levels beside it, and its standard uncertainty."""
-    left, right = _level_left(body, column - _REACH * blur), _level_right(body, column + _REACH * blur)
-    first, window = _window(body, column, column, blur)
-    fit = fit_steps(window, first, np.array([column]), np.array([right - left]), left, blur)
-    return _certain(fit, 0, right - left, sigma)
-
-
-@allocating
-def _certain(fit: Steps, k: int, height: float, sigma: float) -> tuple[float, float]:
-    """Position k and its standard uncertainty, that of the levels beside the step included.
-
-    A level that is off by d moves a step of sensitivities t by d/2 / (h sum t^2), where sum t^2 = 1/(h^2 C_kk).
-    """
-    variance = fit.covariance[k, k]
-    levels = 0.25 * (1.0 / _LEVEL_COLUMNS + 0.5 / _LEVEL_COLUMNS) * height**2 * variance
-    return fit.positions[k], sigma * np.sqrt(variance * (1.0 + levels))
-
-
-@allocating
-def _window(body: Floats, left: float, right: float, blur: float) -> tuple[int, Floats]:
-    """Columns around one or two steps: the first, and the body there, cut at the image."""
-    reach = _REACH * blur + _MARGIN
-    first, last = max(int(left - reach), 0), min(int(right + reach) + 1, body.size)
-    return first, body[first:last]
-
-
-@allocating
-def _level_left(body: Floats, column: float) -> float:
-    """Mean of the columns that end at ``column``."""
-    stop = min(max(int(np.rint(column)), 0), body.size - 1) + 1
-    return body[max(stop - _LEVEL_COLUMNS, 0) : stop].mean()
-
-
-@allocating
-def _level_right(body: Floats, column: float) -> float:
-    """Mean of twice as many columns, from ``column`` on."""
-    start = min(max(int(np.rint(column)), 0), body.size - 1)
-    return body[start : min(start + 2 * _LEVEL_COLUMNS, body.size)].mean()
 
 
 @allocating

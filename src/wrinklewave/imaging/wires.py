@@ -16,7 +16,7 @@ from wrinklewave._jit import allocating
 from wrinklewave.errors import InputError
 from wrinklewave.imaging.appearance import Appearance
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
-from wrinklewave.imaging.steps import Bar, fit_bar
+from wrinklewave.imaging.bars import Bar, fit_bar
 from wrinklewave.imaging.strips import Greys, strip_shares
 
 _HALF = 6  # rows of each half of the band, at most
