@@ -6,7 +6,7 @@ import numpy as np
 
 from wrinklewave.imaging.arrays import Floats
 
-_GAP = 4.0  # gain in chi squared that a gap has to bring in every frame: noise alone brings more in one of forty
+_GAP = 4.0  # gain in chi squared that a gap brings in every frame: noise alone more in one of forty
 _CHANGE = 4.0  # and for every time that the faces meet or part
 
 
