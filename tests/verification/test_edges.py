@@ -11,7 +11,10 @@ from scipy.special import ndtr
 
 from wrinklewave.imaging.edges import EdgeFinder, Optics
 from wrinklewave.imaging.edges.bounds import band_limited_bound, column_bound, mean_column_bound
+from wrinklewave.imaging.edges.columns import find_columns
+from wrinklewave.imaging.edges.levels import Levels
 from wrinklewave.imaging.edges.locking import PixelLocking
+from wrinklewave.imaging.edges.profile import blurred_step
 
 Surface = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
@@ -199,3 +202,30 @@ def test_pixel_locking_is_absent_and_would_be_seen() -> None:
         pulled += PixelLocking.of(edge.rows, residual + 0.02 * np.sin(2 * np.pi * edge.rows))
     assert locking.amplitude < 0.005
     assert pulled.amplitude == pytest.approx(0.02 / np.sqrt(2), abs=0.004)
+
+
+@pytest.mark.parametrize("blur", [0.5, 1.2, 3.0])
+def test_single_precision_and_the_approximated_profile_cost_less_than_a_ten_thousandth_of_a_pixel(
+    blur: float,
+) -> None:
+    """Columns without noise, and without neighbours: I = LOW + (HIGH - LOW) E(r - y), levels known."""
+    rng = np.random.default_rng(5)
+    rows = 150.0 + rng.uniform(-20.0, 20.0, 400)
+    profile = blurred_step(np.arange(256.0)[:, None] - rows, blur)
+    ones = np.ones(rows.size)
+    levels = Levels(
+        origin=rows,
+        blur=blur * ones,
+        bands=np.zeros((2, 6, rows.size)),
+        value=np.array([LOW * ones, HIGH * ones]),
+        gradient=np.zeros((2, rows.size)),
+        noise=np.array([20.0, 30.0]),
+        usable=ones > 0,
+        blocked=ones < 0,
+        contrast=HIGH - LOW,
+    )
+    image = (LOW + (HIGH - LOW) * profile).astype(np.float32)
+    found = find_columns(
+        image, rows + rng.uniform(-0.1, 0.1, rows.size), levels.blur, levels, levels.usable, 5e-3
+    )
+    np.testing.assert_allclose(found.rows, rows, rtol=0.0, atol=1e-4)

@@ -13,15 +13,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from wrinklewave._jit import allocating
+from wrinklewave._jit import allocating, strict
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
+from wrinklewave.imaging.edges.lanes import LANES, Lanes, empty_lanes, take_two_steps
 from wrinklewave.imaging.edges.levels import Levels, with_neighbours
-from wrinklewave.imaging.edges.profile import normal_distribution
 
 _REACH = 3.0  # blurs on either side that carry information on the position
 _MARGIN = 1.5  # pixels added for the error of the starting row
-_MAX_STEPS = 12
-_LARGEST_STEP = 1.0  # px
+_TURNS = 6  # of two steps
 _MISFIT = 0.06  # contrasts: what the model of the profile may miss, beyond noise
 _MISFIT_SIGMAS = 5.0  # of the residual's root mean square
 
@@ -120,75 +119,79 @@ def _locate(
     usable: Flags,
     tolerance: float,
 ) -> tuple[Floats, Floats, Floats, NDArray[np.int64]]:
-    """Rows and standard uncertainties; root mean square of the residual grey values and number of pixels."""
-    n_rows, n_columns = image.shape
-    rows = np.full(n_columns, np.nan)
-    sigma = np.full(n_columns, np.inf)
-    residual = np.full(n_columns, np.inf)
-    count = np.zeros(n_columns, np.int64)
-    for c in range(n_columns):
-        if not usable[c] or not np.isfinite(start[c] + value[0, c] + value[1, c]):
-            continue
-        reach = _REACH * blur[c] + _MARGIN
-        first, last = int(np.floor(start[c] - reach)), int(np.ceil(start[c] + reach))
-        if first < 0 or last >= n_rows:
-            if start[c] - 1.5 * blur[c] < 0 or start[c] + 1.5 * blur[c] > n_rows - 1:
-                continue
-            first, last = max(first, 0), min(last, n_rows - 1)
-        count[c] = last - first + 1
-        row, moved, proposed = start[c], 0.0, 0.0
-        for iteration in range(_MAX_STEPS):
-            slope, information, squares = _step(
-                image, c, first, last, row, origin[c], blur[c], value, gradient, noise
-            )
-            if iteration == 0:
-                residual[c] = np.sqrt(squares / count[c])  # for columns where nothing is found
-            if information <= 0.0:
-                break
-            step = slope / information
-            gain = 1.0
-            if moved != 0.0 and proposed != step:  # the secant between two proposals, within reason
-                gain = min(max(moved / (proposed - step), 0.3), 2.5)
-            moved, proposed = min(max(gain * step, -_LARGEST_STEP), _LARGEST_STEP), step
-            row += moved
-            if abs(row - start[c]) > reach:
-                break
-            if abs(moved) < tolerance:
-                rows[c] = row
-                sigma[c] = 1.0 / np.sqrt(information)
-                residual[c] = np.sqrt(squares / count[c])
-                break
+    """Rows and standard uncertainties; root mean square of the residual grey values and number of pixels.
+
+    ``LANES`` columns at a time take two steps side by side; those that need more, few, take turns again.
+    """
+    rows, sigma = np.full(start.size, np.nan), np.full(start.size, np.inf)
+    residual = np.full(start.size, np.inf)
+    first, count = _windows(image.shape[0], start, blur, usable & np.isfinite(start + value[0] + value[1]))
+    at, left = start.copy(), np.flatnonzero(count)
+    lanes = empty_lanes(count.max())
+    for turn in range(_TURNS):
+        n_left = 0
+        for begin in range(0, left.size, LANES):
+            columns = left[begin : begin + LANES]
+            _fill(lanes, image, columns, first, count, at, origin, blur, value, gradient)
+            take_two_steps(lanes, count[columns].max(), noise)
+            for i in range(columns.size):
+                c = columns[i]
+                at[c] = first[c] + lanes.at[i]
+                if turn == 0:
+                    residual[c] = np.sqrt(lanes.first_squares[i] / count[c])  # where nothing is found
+                if not lanes.information[i] > 0.0 or abs(at[c] - start[c]) > _reach(blur[c]):
+                    continue
+                if abs(lanes.moved[i]) >= tolerance:
+                    left[n_left] = c
+                    n_left += 1
+                    continue
+                rows[c], sigma[c] = at[c], 1.0 / np.sqrt(lanes.information[i])
+                residual[c] = np.sqrt(lanes.squares[i] / count[c])
+        left = left[:n_left]
     return rows, sigma, residual, count
 
 
+@strict
+def _reach(blur: float) -> float:
+    """Pixels on either side that are looked at."""
+    return _REACH * blur + _MARGIN
+
+
 @allocating
-def _step(
+def _windows(
+    n_rows: int, start: Floats, blur: Floats, known: Flags
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """First pixel and number of pixels to look at, shape [n_columns]; none where the edge is not in sight."""
+    first, count = np.zeros(start.size, np.int64), np.zeros(start.size, np.int64)
+    for c in range(start.size):
+        if known[c] and start[c] - 1.5 * blur[c] >= 0 and start[c] + 1.5 * blur[c] <= n_rows - 1:
+            reach = _reach(blur[c])
+            first[c] = max(int(np.floor(start[c] - reach)), 0)
+            count[c] = min(int(np.ceil(start[c] + reach)), n_rows - 1) - first[c] + 1
+    return first, count
+
+
+@allocating
+def _fill(
+    lanes: Lanes,
     image: Pixels,
-    c: int,
-    first: int,
-    last: int,
-    row: float,
-    origin: float,
-    blur: float,
+    columns: NDArray[np.int64],
+    first: NDArray[np.int64],
+    count: NDArray[np.int64],
+    at: Floats,
+    origin: Floats,
+    blur: Floats,
     value: Floats,
     gradient: Floats,
-    noise: Floats,
-) -> tuple[float, float, float]:
-    """Sums over the window: t r / s^2, t^2 / s^2 and r^2; sensitivity t = dI/dy, residual r, noise s."""
-    above, below = value[0, c], value[1, c]
-    slope, information, squares = 0.0, 0.0, 0.0
-    per_blur = 1.0 / blur
-    lower, lower_integral = normal_distribution((first - 0.5 - row) * per_blur)
-    for r in range(first, last + 1):
-        upper, upper_integral = normal_distribution((r + 0.5 - row) * per_blur)
-        share = blur * (upper_integral - lower_integral)
-        dark = above + gradient[0, c] * (r - origin)
-        bright = below + gradient[1, c] * (r - origin)
-        difference = image[r, c] - dark - (bright - dark) * share
-        sensitivity = -(bright - dark) * (upper - lower)
-        weight = 1.0 / (noise[0] * noise[0] * (1.0 - share) + noise[1] * noise[1] * share)
-        slope += weight * sensitivity * difference
-        information += weight * sensitivity * sensitivity
-        squares += difference * difference
-        lower, lower_integral = upper, upper_integral
-    return slope, information, squares
+) -> None:
+    """What is known of ``columns`` in the first lanes; the others keep what they had."""
+    for i in range(columns.size):
+        c = columns[i]
+        lanes.depth[i], lanes.blur[i], lanes.at[i] = count[c], blur[c], at[c] - first[c]
+        depth = first[c] - origin[c]
+        dark, dark_slope = value[0, c] + gradient[0, c] * depth, gradient[0, c]
+        lanes.dark[i], lanes.dark_slope[i] = dark, dark_slope
+        lanes.height[i] = value[1, c] + gradient[1, c] * depth - dark
+        lanes.height_slope[i] = gradient[1, c] - dark_slope
+        for j in range(count[c]):
+            lanes.greys[j, i] = image[first[c] + j, c]

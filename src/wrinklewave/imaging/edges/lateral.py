@@ -72,14 +72,19 @@ def seen_exactly(surface: Floats, linear: Floats, slope: Floats, blur: float) ->
     v = blur * blur + 1.0 / 12.0
     share = np.exp(-0.5 * (np.arange(width) - width // 2) ** 2 / v)
     share /= share.sum()
-    seen = linear.copy()
-    for i in range(n):
-        across = v * slope[i] * slope[i]
-        T = np.sqrt(2.0 * v + across)
-        steepness = np.sqrt(2.0 * np.pi * (T * T + across))
-        for _ in range(_STEPS):
-            below = 0.0
-            for j in range(width):
-                below += share[j] * normal_distribution((seen[i] - surface[i + j]) / T)[0]
-            seen[i] += (0.5 - below) * steepness
+    per_T = 1.0 / np.sqrt(v * (2.0 + slope**2))
+    steepness = np.sqrt(4.0 * np.pi * v * (1.0 + slope**2))
+    seen, below = linear.copy(), np.empty(n)
+    for _ in range(_STEPS):
+        below[:] = 0.0
+        for j in range(width):
+            _add_share_below(seen, surface[j : j + n], per_T, share[j], below)
+        seen += (0.5 - below) * steepness
     return seen
+
+
+@vector
+def _add_share_below(seen: Floats, surface: Floats, per_T: Floats, share: float, below: Floats) -> None:
+    """What a neighbour adds to the mixture at the rows that are seen."""
+    for i in range(uintp(seen.size)):
+        below[i] += share * normal_distribution((seen[i] - surface[i]) * per_T[i])[0]

@@ -1,4 +1,4 @@
-"""The profile of a blurred edge along a column of pixels, and its tables.
+"""The profile of a blurred edge along a column of pixels.
 
 A step blurred by a Gaussian of standard deviation s and integrated over pixels of height 1 has the profile
 E(u) = s [G((u + 1/2)/s) - G((u - 1/2)/s)], G(t) = t Phi(t) + phi(t), at the distance u of the pixel's centre
@@ -9,37 +9,48 @@ and density.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-from wrinklewave._jit import allocating
+from wrinklewave._jit import scalar
 from wrinklewave.imaging.arrays import Floats
 
-_REACH = 6.0  # Phi(-6) = 1e-9
-_PER_UNIT = 128  # linear interpolation at this spacing is good to 3e-6 of the step
+_FARTHEST = 18.0  # t^2/2 beyond which phi stays what it is, 6e-9
 
 
-def _tables() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    from scipy.special import ndtr
-
-    t = np.linspace(-_REACH, _REACH, int(2 * _REACH * _PER_UNIT) + 1)
-    Phi = ndtr(t)
-    return Phi, t * Phi + np.exp(-0.5 * t**2) / np.sqrt(2 * np.pi)
-
-
-_PHI, _G = _tables()
-
-
-@allocating
+@scalar
 def normal_distribution(t: float) -> tuple[float, float]:
-    """Phi(t) and its integral G(t), from the tables."""
-    if t <= -_REACH:
-        return 0.0, 0.0
-    if t >= _REACH:
-        return 1.0, t
-    position = (t + _REACH) * _PER_UNIT
-    k = int(position)
-    f = position - k
-    return _PHI[k] + f * (_PHI[k + 1] - _PHI[k]), _G[k] + f * (_G[k + 1] - _G[k])
+    """Phi(t) and its integral G(t), good to 1e-7 and 1e-6, without a branch or a table: loops of it become vectors.
+
+    phi is the 16th power of a polynomial, Phi Hastings' approximation (Abramowitz and Stegun, 26.2.17).
+    """
+    x = min(0.5 * t * t, _FARTHEST) * 0.0625
+    e = 1.0 + x * (
+        -0.9999998590772746
+        + x
+        * (
+            0.4999971159429239
+            + x
+            * (
+                -0.16664608114497392
+                + x
+                * (
+                    0.041595336090998636
+                    + x * (-0.008198047825897753 + x * (0.001243501926340873 - x * 0.00011252538102787812))
+                )
+            )
+        )
+    )
+    e *= e
+    e *= e
+    e *= e
+    density = 0.3989422804014327 * e * e
+    k = 1.0 / (1.0 + 0.2316419 * abs(t))
+    tail = (
+        density
+        * k
+        * (0.319381530 + k * (-0.356563782 + k * (1.781477937 + k * (-1.821255978 + k * 1.330274429))))
+    )
+    distribution = tail if t < 0.0 else 1.0 - tail
+    return distribution, t * distribution + density
 
 
 def blurred_step(u: Floats, blur: float) -> Floats:
