@@ -26,8 +26,7 @@ from numba import config, cuda
 
 from benchmarks import parts
 from benchmarks.machine import REPOSITORY, description
-from wrinklewave.dynamics.backends import Device
-from wrinklewave.dynamics.boundary import N_TOTALS
+from wrinklewave.dynamics.backends import Device, March
 from wrinklewave.dynamics.model import Model
 from wrinklewave.dynamics.simulation import Simulation
 
@@ -72,9 +71,7 @@ def advanced(model: Model, device: Device, n_steps: int) -> dict[str, np.ndarray
     """State after a number of steps of one length."""
     simulation = Simulation(model, np.zeros(1), device=device)
     dt = 0.5 * simulation.stable_step()
-    totals = np.zeros(N_TOTALS)
-    for _ in simulation.backend.march(n_steps, n_steps, 0.0, 0.0, dt, totals):
-        pass
+    totals = simulation.backend.march(March(n_steps, 0.0, 0.0, dt)).totals
     simulation.backend.fetch_all()
     return {name: getattr(model.arrays, name) for name in STATE} | {"memory": model.memory, "totals": totals}
 
@@ -107,15 +104,10 @@ def throughput(size: float) -> Result:
     """Updates per second of one mesh, from rest and struck, in marches of 64 steps."""
     model = parts.paper(*parts.shape(size))
     simulation = Simulation(model, np.zeros(1), device="cuda")
-    dt, totals = 0.5 * simulation.stable_step(), np.zeros(N_TOTALS)
-
-    def march(n: int, t: float) -> float:
-        return sum(s.seconds for s in simulation.backend.march(n, n, t, dt, dt, totals))
-
-    march(2, 0.0)  # compiles
+    dt = 0.5 * simulation.stable_step()
     n, best, spent = 64, np.inf, 0.0
     while spent < SECONDS_PER_SIZE:
-        seconds = march(n, 0.0)
+        seconds = simulation.backend.march(March(n, 0.0, dt, dt)).seconds
         best, spent = min(best, seconds / n), spent + seconds
     elements = model.mesh.n_elements
     rate, copy = elements / best, copy_bandwidth(max(104.0 * elements, 1e6))

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from support.models import K_0, MU_0, MU_1, RHO, TAU, Array, build, distorted, elastic, history, relaxing
-from wrinklewave.dynamics.backends import Device
+from wrinklewave.dynamics.asking import answered_together
+from wrinklewave.dynamics.backends import Device, March, Sample
 from wrinklewave.dynamics.boundary import (
     FIXED,
     FREE,
@@ -22,6 +24,7 @@ from wrinklewave.dynamics.boundary import (
 from wrinklewave.dynamics.drives import cubic_segments
 from wrinklewave.dynamics.model import AT_REST, Model, assemble
 from wrinklewave.dynamics.simulation import Simulation
+from wrinklewave.errors import RunError
 from wrinklewave.materials.moduli import Viscoelastic
 from wrinklewave.mesh.block import GridMesh
 
@@ -108,17 +111,67 @@ def compressed() -> Model:
     return assemble(mesh, [relaxing(bulk=False)], boundary, mass_scaling=4.0)
 
 
+def sheared_otherwise() -> Model:
+    """As :func:`sheared`, of another solid and mesh, under a history of fewer pieces."""
+    mesh, solid = distorted(6, 4, seed=4), relaxing(bulk=True)
+    across = cubic_segments(KNOTS[[0, 2, 8]], lambda t: 2e3 * t**2, lambda t: 4e3 * t)
+    boundary = Boundary(LEFT_LINEAR, FREE, FREE, ROLLER, False, 6e-3, 0.0, PUSH, across, np.zeros((3, 4, 7)))
+    return assemble(mesh, [replace(solid, mu_inf=2 * MU_0)], boundary, one_point=False)
+
+
+def grooved_softly() -> Model:
+    """As :func:`grooved`, of a softer solid."""
+    model = grooved()
+    model.arrays.terms[:, :, 0] *= 0.5
+    return model
+
+
+def overrun() -> Model:
+    """A plate at 3 km/s: nothing is finite after the first steps."""
+    motion = cubic_segments(KNOTS, lambda t: 3e3 * t, lambda t: 3e3 + 0.0 * t)
+    return build(distorted(6, 4), relaxing(bulk=False), "one-point", left=LEFT_STRUCK, motion=motion)
+
+
+BATCHES: tuple[tuple[Callable[[], Model], ...], ...] = (
+    (struck, overrun, compressed),
+    (sheared, sheared_otherwise),
+    (grooved_softly, grooved),
+)
+"""Members have one shape; their materials, meshes, edges, histories and steps differ."""
 MODELS: dict[str, Callable[[], Model]] = {
     f.__name__: f for f in (struck, mixed, grooved, bilayer, sheared, compressed)
 }
 
 
+def simulation_of(model: Model, device: Device) -> Simulation:
+    """Through the events of all tests."""
+    return Simulation(model, EVENTS, device=device, history_interval=2.5e-5)
+
+
 def run(model: Model, device: Device) -> dict[str, Array]:
     """State, fields, totals and history at the end."""
-    simulation = Simulation(model, EVENTS, device=device, history_interval=2.5e-5)
+    simulation = simulation_of(model, device)
     for _ in simulation.run():
         pass
     return results(simulation)
+
+
+def to_the_end(simulation: Simulation) -> Generator[March, Sample, dict[str, Array]]:
+    """The marches of a whole run."""
+    while simulation.has_events:
+        yield from simulation.to_next_event()
+    return results(simulation)
+
+
+def run_together(simulations: Sequence[Simulation]) -> list[dict[str, Array] | RunError]:
+    """What the runs of a batch lead to, or the errors that they failed with."""
+    from wrinklewave.dynamics.cuda.backend import Batch
+
+    batch = Batch([simulation.model for simulation in simulations])
+    for simulation, member in zip(simulations, batch.members, strict=True):
+        simulation.backend = member
+    found = dict(answered_together([to_the_end(simulation) for simulation in simulations], batch.march))
+    return [found[place] for place in range(len(simulations))]
 
 
 def results(simulation: Simulation) -> dict[str, Array]:

@@ -12,29 +12,69 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from support.backend_models import EVENTS, MODELS, results, run, struck
+from support.backend_models import (
+    BATCHES,
+    MODELS,
+    compressed,
+    results,
+    run,
+    run_together,
+    simulation_of,
+    struck,
+)
 from support.cases import EXAMPLES
 from support.models import Array
 from wrinklewave.dynamics.backends import Device
 from wrinklewave.dynamics.checkpoint import Record, read_checkpoint, write_checkpoint
+from wrinklewave.dynamics.model import Model
 from wrinklewave.dynamics.simulation import Simulation
+from wrinklewave.errors import RunError
 from wrinklewave.experiments.simulate import simulate
 
 
-def restarted(device: Device) -> dict[str, Array]:
-    """As :func:`run` of :func:`struck`, through a checkpoint in the middle."""
+def half_done(device: Device) -> Simulation:
+    """That of :func:`struck` from a checkpoint in the middle."""
     with TemporaryDirectory() as folder:
         file = Path(folder) / "checkpoint.h5"
-        first = Simulation(struck(), EVENTS, device=device, history_interval=2.5e-5)
+        first = simulation_of(struck(), device)
         events = first.run()
         next(events)
         next(events)
         write_checkpoint(file, first, Record({"nothing": np.zeros(1)}), "")
-        second = Simulation(struck(), EVENTS, device=device, history_interval=2.5e-5)
+        second = simulation_of(struck(), device)
         read_checkpoint(file, second, "")
+    return second
+
+
+def restarted(device: Device) -> dict[str, Array]:
+    """As :func:`run` of :func:`struck`, through a checkpoint in the middle."""
+    second = half_done(device)
     for _ in second.run():
         pass
     return results(second)
+
+
+def of_batches() -> dict[str, dict[str, Array]]:
+    """Members of batches by the names of their models, and one that joins another half done."""
+    found = {}
+    for members in BATCHES:
+        done = run_together([simulation_of(model(), "cuda") for model in members])
+        found |= {f"together_{model.__name__}": of for model, of in zip(members, done, strict=True)}
+    _, found["together_restarted"] = run_together([simulation_of(compressed(), "cuda"), half_done("cuda")])
+    return {name: as_arrays(of) for name, of in found.items()}
+
+
+def alone(model: Model) -> dict[str, Array] | RunError:
+    """A run of its own on the GPU, or the error that it fails with."""
+    try:
+        return run(model, "cuda")
+    except RunError as error:
+        return error
+
+
+def as_arrays(of: dict[str, Array] | RunError) -> dict[str, Array]:
+    """Results, or the words of an error."""
+    return {"error": np.array(str(of))} if isinstance(of, RunError) else of
 
 
 def from_case(device: Device) -> dict[str, Array]:
@@ -54,6 +94,9 @@ def main(device: Device, file: str) -> None:
     )  # the simulator's threads wait for each other far more often than they compute
     runs = {name: run(model(), device) for name, model in MODELS.items()}
     runs |= {"restarted": restarted(device), "from_case": from_case(device)}
+    if device == "cuda":
+        others = (model for members in BATCHES for model in members if model.__name__ not in runs)
+        runs |= {model.__name__: as_arrays(alone(model())) for model in others} | of_batches()
     np.savez(
         file, **{f"{name}/{key}": values for name, found in runs.items() for key, values in found.items()}
     )

@@ -27,14 +27,13 @@ from numba.cuda.typing.typeof import typeof
 
 from support.backend_models import MODELS
 from support.models import build, distorted
-from wrinklewave.dynamics.boundary import N_TOTALS
+from wrinklewave.dynamics.backends import March
 from wrinklewave.dynamics.cuda import backend, kernels
 from wrinklewave.dynamics.model import Model
 from wrinklewave.materials.moduli import Viscoelastic
 
 CAPABILITY = (9, 0)
-FEW, MANY = 0, 1000
-"""Multiprocessors: the mesh is too large for one launch, or it fits."""
+Resources = dict[str, int]
 
 
 class _Array(np.ndarray):
@@ -63,7 +62,7 @@ def _plain(argument: Any) -> Any:
 class _Compiled:
     """Stands in for a kernel: a launch compiles it."""
 
-    def __init__(self, kernel: Any, found: dict[str, str]) -> None:
+    def __init__(self, kernel: Any, found: dict[str, Resources]) -> None:
         self._kernel, self._found = kernel, found
         self.typeof_pyval = lambda argument: argument
 
@@ -74,41 +73,37 @@ class _Compiled:
         signature = types.void(*(typeof(_plain(argument)) for argument in arguments))
         name = self._kernel.py_func.__name__
         if name not in self._found:
-            self._found[name], _ = cuda.compile_ptx(self._kernel.py_func, signature, cc=CAPABILITY)
+            self._found[name] = resources(cuda.compile_ptx(self._kernel.py_func, signature, cc=CAPABILITY)[0])
 
     def compile(self, signature: Any) -> SimpleNamespace:
         """What the backend asks before a cooperative launch."""
-        return SimpleNamespace(max_cooperative_grid_blocks=lambda *arguments: 1)
+        return SimpleNamespace(max_threads_per_block=256, max_cooperative_grid_blocks=lambda *arguments: 1)
 
 
-def compiled(model: Model) -> dict[str, str]:
-    """PTX of every kernel that steps and reads a model, by name."""
-    found: dict[str, str] = {}
+def compiled(model: Model) -> dict[str, Resources]:
+    """What every kernel that steps and reads a model takes, by name."""
+    found: dict[str, Resources] = {}
     for name, kernel in _KERNELS.items():
         setattr(kernels, name, _Compiled(kernel, found))
-    for multiprocessors in (FEW, MANY):
-        device = SimpleNamespace(MULTIPROCESSOR_COUNT=multiprocessors, compute_capability=CAPABILITY)
-        backend.cuda = SimpleNamespace(  # type: ignore[assignment]
-            to_device=lambda values: np.array(values).view(_Array),
-            device_array=_device_array,
-            pinned_array=np.zeros,
-            stream=MagicMock,
-            event=MagicMock,
-            current_context=lambda: None,
-            get_current_device=lambda device=device: device,
-        )
-        dispatcher.get_current_device = lambda device=device: device
-        stepped = backend.Cuda(model)
-        list(stepped.march(3, 2, 0.0, 0.0, 1e-6, np.zeros(N_TOTALS)))
-        stepped.stable_steps()
-        stepped.snapshot()()
+    backend.cuda = SimpleNamespace(  # type: ignore[assignment]
+        to_device=lambda values, stream=None: np.array(values).view(_Array),
+        device_array=_device_array,
+        pinned_array=np.zeros,
+        stream=MagicMock,
+        event=MagicMock,
+        current_context=lambda: None,
+    )
+    dispatcher.get_current_device = lambda: SimpleNamespace(compute_capability=CAPABILITY)
+    (member,) = backend.Batch([model]).members
+    member.march(March(3, 0.0, 0.0, 1e-6))
+    member.snapshot()()
     return found
 
 
-_KERNELS = {name: getattr(kernels, name) for name in ("steps", "sample", "march", "snapshot", "stable_steps")}
+_KERNELS = {name: getattr(kernels, name) for name in ("steps", "sample", "snapshot", "stable_steps")}
 
 
-def resources(ptx: str) -> dict[str, int]:
+def resources(ptx: str) -> Resources:
     """Registers of a kernel and bytes that it spills, as ptxas says; nothing if there is no ptxas."""
     ptxas = next(Path(sys.prefix).rglob("ptxas"), None) or shutil.which("ptxas")
     if ptxas is None:
@@ -134,7 +129,7 @@ def many_terms() -> Model:
 def main(file: str) -> None:
     """Compile the kernels of all models."""
     models = (MODELS["struck"], many_terms)
-    found = {f.__name__: {k: resources(ptx) for k, ptx in compiled(f()).items()} for f in models}
+    found = {f.__name__: compiled(f()) for f in models}
     Path(file).write_text(json.dumps(found, indent=1))
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from support.backend_models import EVENTS, MODELS, SHEAR
+from support.backend_models import BATCHES, EVENTS, MODELS, SHEAR
 from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, WORK, position
 from wrinklewave.environment import gpus
 
@@ -111,7 +111,7 @@ def test_kernels_compile_for_a_gpu(tmp_path):
     file = tmp_path / "kernels.json"
     subprocess.run([sys.executable, "-m", "support.cuda_targets", str(file)], env=environment(), check=True)
     found = json.loads(file.read_text())
-    kernels = {"steps", "sample", "march", "snapshot", "stable_steps"}
+    kernels = {"steps", "sample", "snapshot", "stable_steps"}
     assert {name: set(of_model) for name, of_model in found.items()} == {
         "struck": kernels,
         "many_terms": kernels,
@@ -124,6 +124,21 @@ def test_kernels_compile_for_a_gpu(tmp_path):
 def test_restart_changes_no_bit(runs, device):
     whole, restarted = of(runs[device], "struck"), of(runs[device], "restarted")
     assert all(np.array_equal(whole[key], restarted[key]) for key in whole)
+
+
+@pytest.mark.parametrize("name", [model.__name__ for members in BATCHES for model in members] + ["restarted"])
+def test_a_batch_changes_no_bit_of_its_members(runs, name):
+    alone, together = of(runs["cuda"], name), of(runs["cuda"], f"together_{name}")
+    assert alone.keys() == together.keys()
+    assert all(np.array_equal(alone[key], together[key]) for key in alone)
+
+
+def test_members_of_batches_differ_and_one_fails(runs):
+    assert "not finite" in str(of(runs["cuda"], "together_overrun")["error"])
+    steps = {len(of(runs["cuda"], f"together_{name}")["step"]) for name in ("struck", "compressed")}
+    assert len(steps) == 2
+    for one, other in (("sheared", "sheared_otherwise"), ("grooved", "grooved_softly")):
+        assert not np.array_equal(of(runs["cuda"], one)["u"], of(runs["cuda"], other)["u"])
 
 
 @pytest.mark.parametrize("device", ["cpu", "cuda"])

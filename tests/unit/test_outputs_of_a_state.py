@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from support.backend_models import MODELS, struck
+from wrinklewave.dynamics.backends import March
 from wrinklewave.dynamics.simulation import Simulation
 
 END = 1e-4
@@ -18,8 +19,7 @@ def at_the_end(model, **choices) -> Simulation:
 
 def further(simulation: Simulation) -> None:
     """Some more steps."""
-    for _ in simulation.backend.march(20, 20, END, simulation.dt, simulation.dt, simulation.totals):
-        pass
+    simulation.backend.march(March(20, END, simulation.dt, simulation.dt))
 
 
 def test_snapshot_is_that_of_its_time_however_late_its_fields_are_made():
@@ -47,7 +47,7 @@ def test_fields_stay_when_the_room_of_their_snapshot_is_used_again():
 @pytest.mark.parametrize("name", MODELS)
 def test_kinetic_energy_is_that_of_all_nodes(name):
     simulation = at_the_end(MODELS[name]())
-    (sample,) = simulation.backend.march(1, 1, END, simulation.dt, simulation.dt, simulation.totals)
+    sample = simulation.backend.march(March(1, END, simulation.dt, simulation.dt))
     a = simulation.model.arrays
     vx, vy, inverse_mass = (values.astype(np.float64) for values in (a.vx, a.vy, a.inverse_mass))
     moving = inverse_mass > 0

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal, Protocol
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
@@ -15,23 +15,41 @@ if TYPE_CHECKING:
 Device = Literal["cpu", "cuda"]
 
 
-@dataclass(frozen=True, eq=False)
-class Sample:
-    """Energies and the struck end's top corner after some steps.
+@dataclass(frozen=True)
+class March:
+    """Steps of one length that a simulation asks for.
 
     Args:
-        steps: taken since the sample before.
-        seconds: of wall-clock time that they took.
+        n: how many, at least one.
+        start: time of the present positions [s].
+        last_dt: the step that led to them (0 at the start) [s].
+        dt: the step [s].
+    """
+
+    n: int
+    start: float
+    last_dt: float
+    dt: float
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """Energies, edges and the struck end's top corner after a march.
+
+    Args:
+        seconds: of wall-clock time that its steps took.
         survey: sums and extremes of each element row, shape [n_rows, N_COLUMNS], see
             :mod:`wrinklewave.dynamics.energy`; the next sample may overwrite it.
         kinetic: kinetic energy at mid-step [J/m].
+        totals: work and impulses at the boundary during the march, and the force in its last step, shape [N_TOTALS],
+            see :mod:`wrinklewave.dynamics.boundary`.
         corner: displacements u, w of the struck end's top corner [m].
     """
 
-    steps: int
     seconds: float
     survey: NDArray
     kinetic: float
+    totals: NDArray
     corner: tuple[float, float]
 
 
@@ -51,14 +69,8 @@ class Snapshot:
 class Backend(Protocol):
     """Steps a model that is at rest or comes from a checkpoint, whose state it takes when it is first used."""
 
-    def march(
-        self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray
-    ) -> Iterator[Sample]:
-        """Take ``n`` steps of ``dt`` [s] from time ``t``, and a sample after every ``group`` of them and at the end.
-
-        ``dt_last`` is the step that led to the present state (0 at the start). ``totals`` [N_TOTALS] are the work and
-        impulses at the boundary, brought up to date before every sample.
-        """
+    def march(self, wanted: March) -> Sample:
+        """Take steps, and a sample of the state that they lead to."""
 
     def least_stable_step(self) -> float:
         """The smallest of :meth:`stable_steps` [s], NaN if any is."""
@@ -76,9 +88,9 @@ class Backend(Protocol):
 def backend_for(device: Device, model: Model) -> Backend:
     """The backend of a device, for one model."""
     if device == "cuda":
-        from wrinklewave.dynamics.cuda.backend import Cuda
+        from wrinklewave.dynamics.cuda.backend import Batch
 
-        return Cuda(model)
+        return Batch([model]).members[0]
     from wrinklewave.dynamics.cpu import Cpu
 
     return Cpu(model)

@@ -17,10 +17,11 @@ from wrinklewave.dynamics.step import advance
 from wrinklewave.dynamics.team import share_out
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
 
+    from wrinklewave.dynamics.backends import March
     from wrinklewave.dynamics.model import Model
     from wrinklewave.dynamics.step import Arrays
 
@@ -86,23 +87,18 @@ class Cpu:
         self._slots: list[_Slot] = []  # that no snapshot holds
         self._compiled = False
 
-    def march(
-        self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
-    ) -> Iterator[Sample]:
-        """Step, and survey the state after every group of steps."""
-        m, a = self._model, self._model.arrays
+    def march(self, wanted: March) -> Sample:
+        """Step, and survey the state."""
+        m, a, dt = self._model, self._model.arrays, wanted.dt
         self._compile()
-        for first in range(0, n, group):
-            count = min(group, n - first)
-            last = dt_last if first == 0 else dt
-            shared = self._pace.choose()
-            begin = time.perf_counter()
-            advance(count, t + first * dt, last, dt, shared, self._memory, m.terms, m.boundary, totals)
-            seconds = time.perf_counter() - begin
-            self._pace.note(seconds / count)
-            share_out(survey_share, self._parts, dt, a, self._memory, m.terms, self._work, self._survey)
-            kinetic = float(self._survey[:, KINETIC].sum())
-            yield Sample(count, seconds, self._survey[:-1, :N_COLUMNS], kinetic, (a.u[-1, 0], a.w[-1, 0]))
+        shared, totals = self._pace.choose(), np.zeros(N_TOTALS)
+        begin = time.perf_counter()
+        advance(wanted.n, wanted.start, wanted.last_dt, dt, shared, self._memory, m.terms, m.boundary, totals)
+        seconds = time.perf_counter() - begin
+        self._pace.note(seconds / wanted.n)
+        share_out(survey_share, self._parts, dt, a, self._memory, m.terms, self._work, self._survey)
+        kinetic, corner = float(self._survey[:, KINETIC].sum()), (a.u[-1, 0], a.w[-1, 0])
+        return Sample(seconds, self._survey[:-1, :N_COLUMNS], kinetic, totals, corner)
 
     def _compile(self) -> None:
         """Take no step once, so that the time of the first steps is not that of the compiler."""

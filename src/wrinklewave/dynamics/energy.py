@@ -24,6 +24,8 @@ bulk viscosity and of hourglass control [W/m]; largest hourglass amplitude per e
 N_COLUMNS = 8
 KINETIC, N_SUMS = N_COLUMNS, N_COLUMNS + 1
 """What is summed up of a row: a survey's columns, then the kinetic energy of its nodes at mid-step [J/m]."""
+BEYOND = 1e30
+"""More than any volume ratio or stable step [s], to look for the least; single precision has room for it."""
 
 
 class Point(NamedTuple):
@@ -134,7 +136,7 @@ def survey_run(j, start, stop, layer, dt, a, memory, terms, out):
         w0 = (w[0] - dt * vy[0], w[1] - dt * vy[1], w[2] - dt * vy[2], w[3] - dt * vy[3])
         A = area(X, Y)
         e, e0 = volume_change(X, Y, u, w), volume_change(X, Y, u0, w0)
-        springs, viscous, control, J_least, J_most = 0.0, 0.0, 0.0, 1e300, 0.0
+        springs, viscous, control, J_least, J_most = 0.0, 0.0, 0.0, BEYOND, 0.0
         stored = 0.25 * K * A * (e * e + e0 * e0)
         rate = (e - e0) / dt
         J = 1.0 + 0.5 * (e + e0)

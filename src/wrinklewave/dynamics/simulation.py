@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.dynamics.backends import Backend, Device, Sample, backend_for
+from wrinklewave.dynamics.asking import answered
+from wrinklewave.dynamics.backends import Backend, Device, March, Sample, backend_for
 from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, N_TOTALS, WORK
 from wrinklewave.dynamics.energy import (
     BULK_VISCOUS,
@@ -22,7 +23,7 @@ from wrinklewave.errors import RunError
 from wrinklewave.materials.neo_hookean import J_MAX, J_MIN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator, Iterator
 
     from numpy.typing import NDArray
 
@@ -129,11 +130,24 @@ class Simulation:
             RunError: if an element inverts, the state stops being finite, or the stable step collapses; it names the
                 element, its place and the time.
         """
-        while self.next_event < self.events.size:
-            if self.next_event > 0:
-                self._go(self.events[self.next_event - 1], self.events[self.next_event])
-            self.next_event += 1
-            yield Event(self.next_event - 1, self.time)
+        while self.has_events:
+            yield answered(self.to_next_event(), self.backend.march)
+
+    @property
+    def has_events(self) -> bool:
+        """Whether there is an event to go to."""
+        return self.next_event < self.events.size
+
+    def to_next_event(self) -> Generator[March, Sample, Event]:
+        """Go to the next event, whoever takes the steps: each march is asked for, and its sample is the answer.
+
+        Raises:
+            RunError: as :meth:`run`.
+        """
+        if self.next_event > 0:
+            yield from self._go(self.events[self.next_event - 1], self.events[self.next_event])
+        self.next_event += 1
+        return Event(self.next_event - 1, self.time)
 
     def fields(self) -> NDArray[np.float64]:
         """Element fields now, shape [len(FIELDS), n_rows, n_columns], see :mod:`wrinklewave.dynamics.fields`."""
@@ -151,22 +165,26 @@ class Simulation:
             raise self._failure()
         return dt
 
-    def _go(self, start: float, stop: float) -> None:
+    def _go(self, start: float, stop: float) -> Generator[March, Sample, None]:
         t = start
         while t < stop:
             n = int(np.ceil((stop - t) / (self.safety * self._next_stable_step())))
             dt, count = float(stop - t) / n, min(n, self.patience)
-            self._march(count, t, dt)
+            yield from self._march(count, t, dt)
             t = stop if count == n else t + count * dt
 
-    def _march(self, n: int, start: float, dt: float) -> None:
-        group, done = max(1, int((1 + ROUNDING) * self.history_interval / dt)), 0
-        for sample in self.backend.march(n, group, start, self.dt, dt, self.totals):
-            done += sample.steps
-            self.step += sample.steps
+    def _march(self, n: int, start: float, dt: float) -> Generator[March, Sample, None]:
+        """Steps in groups, with a row of the history after each."""
+        group = max(1, int((1 + ROUNDING) * self.history_interval / dt))
+        for done in range(0, n, group):
+            count = min(group, n - done)
+            sample = yield March(count, start + done * dt, self.dt, dt)
+            self.step += count
             self.stepping_seconds += sample.seconds
             self.dt = dt
-            self.reached = start + done * dt
+            self.reached = start + (done + count) * dt
+            self.totals[FORCE] = 0.0
+            self.totals += sample.totals
             self._record(self.reached, dt, sample)
 
     def _next_stable_step(self) -> float:

@@ -1,4 +1,4 @@
-"""A model on a GPU: what lies there, how it gets there and back, and how the kernels are launched."""
+"""A batch of models on a GPU: what lies there, how it gets there and back, and how the kernels are launched."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numba import config, cuda
 
-from wrinklewave.dynamics.backends import Sample, Snapshot
-from wrinklewave.dynamics.boundary import FORCE, N_TOTALS, Boundary, n_edge_nodes
+from wrinklewave.dynamics.backends import March, Sample, Snapshot
+from wrinklewave.dynamics.boundary import N_TOTALS, Boundary, Nodes, n_edge_nodes
 from wrinklewave.dynamics.cuda import kernels
 from wrinklewave.dynamics.energy import KINETIC, N_COLUMNS, N_SUMS
 from wrinklewave.dynamics.fields import FIELDS
@@ -19,55 +19,27 @@ from wrinklewave.dynamics.step import Arrays, update_factors
 from wrinklewave.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from wrinklewave.dynamics.model import Model
 
-SAMPLES_PER_LAUNCH = 64
 SIMULATED_THREADS = 4
 """In numba's simulator every thread is one of Python's."""
-SIMULATED_RESIDENTS = 64
-"""Nodes that the simulated device is said to have threads for, so that small meshes try both ways of launching."""
+WARP = 32
 
 config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # meshes too small to fill a GPU are no mistake
 
 
-@dataclass(frozen=True, eq=False)
-class _Resident:
+class _Resident(NamedTuple):
     """What stays on the device: arguments of the kernels, see :mod:`wrinklewave.dynamics.cuda.kernels`."""
 
     arrays: Arrays
     layer: Any
     memory: tuple[Any, ...]
-    boundary: Boundary
     density: Any
-
-
-class _Times(NamedTuple):
-    """Arguments of a march: time, last step, step [s], and the Prony coefficients of the first step."""
-
-    t: float
-    dt_last: float
-    dt: float
-    first_factors: Any
-
-
-class _Samples(NamedTuple):
-    """Where the device puts its samples, one after the other."""
-
-    sums: Any
-    totals: Any
-    corner: Any
-
-
-class _Buffers(NamedTuple):
-    """Of a march: what the edges gather on the device, the same on the host before it starts, and the samples."""
-
-    gathered: Any
-    nothing: NDArray[np.float64]
-    samples: _Samples
+    boundary: Boundary
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,182 +58,304 @@ class _Slot:
         return cls(*on_device, *(cuda.pinned_array(shape) for shape in (nodal, elements)))
 
 
-class Cuda:
-    """A :class:`~wrinklewave.dynamics.backends.Backend` on the current CUDA device, in double precision.
+class _Buffers(NamedTuple):
+    """What launches leave behind: of the edges, node by node and together; by rows; stable steps of elements and rows.
+
+    The first index counts members: of the batch in ``totals``, of the launch in ``sums``, ``edges`` and ``least``.
+    """
+
+    totals: Any
+    sums: Any
+    edges: Any
+    steps: Any
+    least: Any
+
+
+def shape_of(model: Model) -> tuple[Any, ...]:
+    """What models must have in common to be members of one batch."""
+    a, boundary = model.arrays, model.boundary
+    return a.X.shape, a.u.dtype, model.memory.shape, a.terms.shape, boundary.old.shape, boundary.bins.shape
+
+
+class Batch:
+    """Models of one shape on the current CUDA device, whatever their numbers; :attr:`members` step them.
+
+    Members that march together do so in one launch, each with its own step and number of steps; none depends on which
+    others do.
 
     Raises:
         InputError: in numba's simulator, if it cannot work as it is set up.
+        ValueError: if the models are not of one shape.
     """
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, models: Sequence[Model]) -> None:
         if config.ENABLE_CUDASIM and not config.DISABLE_JIT:
             raise InputError(
                 "numba simulates CUDA, which cannot call compiled functions",
                 key="NUMBA_ENABLE_CUDASIM",
                 cure="set NUMBA_DISABLE_JIT=1 as well",
             )
-        self._model = model
-        self._threads = SIMULATED_THREADS if config.ENABLE_CUDASIM else kernels.BLOCK
-        self._shared = 8 * self._threads  # bytes: one number for each
-        self._blocks = -(-model.mesh.X.size // self._threads)
-        self._slots: list[_Slot] = []  # that no snapshot holds
-        self._compiled = False
+        if len(set(map(shape_of, models))) > 1:
+            raise ValueError("models of more than one shape")
+        self._models = list(models)
+        self.members = [Cuda(self, place, model) for place, model in enumerate(models)]
+        self.threads = SIMULATED_THREADS if config.ENABLE_CUDASIM else kernels.BLOCK
+        self.slots: list[_Slot] = []  # that no snapshot holds
+        self._shared = 8 * self.threads  # bytes: one number for each
+        self._grid: tuple[int, int] | None = None  # of the steps; not known before the first
 
-    def march(
-        self, n: int, group: int, t: float, dt_last: float, dt: float, totals: NDArray[np.float64]
-    ) -> Iterator[Sample]:
-        """Step and survey on the device; samples come from it by the launch."""
-        terms, factors = self._model.arrays.terms, self._model.arrays.factors
-        for first in range(0, n, group * SAMPLES_PER_LAUNCH):
-            count = min(group * SAMPLES_PER_LAUNCH, n - first)
-            last = dt_last if first == 0 else dt
-            update_factors(terms, last, dt, factors)
-            times = _Times(t + first * dt, last, dt, cuda.to_device(factors))
-            if count > 1:
-                update_factors(terms, dt, dt, factors)
-            self._on_device.arrays.factors.copy_to_device(factors)  # type: ignore[attr-defined]  # on the device it is a device array
-            yield from self._march(count, group, times, totals)
+    def march(self, wanted: Mapping[int, March]) -> dict[int, Sample]:
+        """Step the members in the places that want it: steps, samples and stable steps in a row, one wait for all."""
+        places = sorted(wanted, key=lambda place: -wanted[place].n)
+        marches = [wanted[place] for place in places]
+        n = np.array([march.n for march in marches])
+        times = cuda.to_device(np.array([(m.start, m.last_dt, m.dt) for m in marches]), stream=self.stream)
+        members = cuda.to_device(np.array(places), stream=self.stream)
+        first_factors = self._bring_factors(wanted)
+        if self._grid is None:  # no step: the time of the first ones is not to be that of the compiler
+            self._step(0 * n, members, times, first_factors)
+            self.stream.synchronize()
+        begin = time.perf_counter()
+        self._step(n, members, times, first_factors)
+        sums, edges, least = self._survey(members, times)
+        seconds = (time.perf_counter() - begin) / n.sum()
+        for place, smallest in zip(places, least, strict=True):
+            self.members[place].known_step = float(smallest)
+        return {
+            place: Sample(
+                seconds=seconds * march.n,
+                survey=sums[k, :-1, :N_COLUMNS],
+                kinetic=float(sums[k, :, KINETIC].sum()),
+                totals=edges[k, :N_TOTALS],
+                corner=(float(edges[k, N_TOTALS]), float(edges[k, N_TOTALS + 1])),
+            )
+            for k, (place, march) in enumerate(zip(places, marches, strict=True))
+        }
+
+    def _bring_factors(self, wanted: Mapping[int, March]) -> Any:
+        """Prony coefficients of all members but the first step's go to where the kernels look for them."""
+        first_factors = self._factors.copy()
+        for place, march in wanted.items():
+            own, arrays = self.members[place].layers, self._models[place].arrays
+            terms, factors = arrays.terms, arrays.factors
+            update_factors(terms, march.last_dt, march.dt, factors)
+            first_factors[own] = factors
+            if march.n > 1:
+                update_factors(terms, march.dt, march.dt, factors)
+            self._factors[own] = factors
+        self.resident.arrays.factors.copy_to_device(self._factors, stream=self.stream)  # type: ignore[attr-defined]  # on the device it is a device array
+        return cuda.to_device(first_factors, stream=self.stream)
+
+    def _step(self, n: NDArray[np.int64], *launch: Any) -> None:
+        d = self.resident
+        arguments = (cuda.to_device(n, stream=self.stream), *launch, d.arrays, d.layer, d.memory)
+        arguments = (*arguments, self._models[0].terms, self._nodes, d.boundary, self._buffers.totals)
+        self._grid = self._grid or self._cooperating(arguments)
+        kernels.steps[(*self._grid, self.stream)](*arguments)
+
+    def _survey(self, members: Any, times: Any) -> tuple[NDArray, NDArray, NDArray]:
+        """Of the members of a launch: sums by rows, what the edges have gathered, and the smallest stable step."""
+        d, b, count, height = self.resident, self._buffers, members.size, self._height
+        launch = kernels.sample[count * height, self.threads, self.stream, self._shared]
+        terms, sums, edges = self._models[0].terms, b.sums[:count], b.edges[:count]
+        launch(members, times, d.arrays, d.layer, d.memory, terms, b.totals, sums, edges)
+        self._estimate_steps(members)
+        found = (values[:count].copy_to_host(stream=self.stream) for values in (sums, edges, b.least))
+        sums, edges, least = found
+        self.stream.synchronize()
+        return sums, edges, least.min(axis=1)
+
+    def _estimate_steps(self, members: Any) -> None:
+        d, b, count = self.resident, self._buffers, members.size
+        blocks = count * (self._height - 1)
+        launch = kernels.stable_steps[blocks, self.threads, self.stream, self._shared]
+        launch(len(self._models), members, d.arrays, d.layer, d.density, b.steps, b.least[:count])
+
+    def stable_steps(self, member: Cuda) -> NDArray[np.float64]:
+        """Largest stable step of each element of a member [s], shape [n_rows, n_columns]."""
+        self._estimate_steps(cuda.to_device(np.array([member.place]), stream=self.stream))
+        return self._buffers.steps[member.rows].copy_to_host(stream=self.stream)
+
+    @cached_property
+    def resident(self) -> _Resident:
+        """Everything, brought to the device at the first use."""
+        arrays = [model.arrays for model in self._models]
+        tall = {name: np.concatenate([getattr(a, name) for a in arrays]) for name in NODAL + BY_LAYER}
+        tall |= {name: np.zeros(0, np.int64) for name in UNUSED}
+        columns = arrays[0].X.shape[1] - 1
+        forces = np.zeros((len(tall["u"]), 8, columns + 2), arrays[0].u.dtype)
+        layers = self._tall([model.mesh.layer.astype(np.uint8) for model in self._models])
+        components = zip(*(model.memory for model in self._models), strict=True)
+        return _Resident(
+            arrays=Arrays(
+                **{name: cuda.to_device(values) for name, values in tall.items()},
+                forces=cuda.to_device(forces),
+            ),
+            layer=cuda.to_device(layers),
+            memory=tuple(cuda.to_device(self._tall(component)) for component in components),
+            density=cuda.to_device(np.concatenate([model.density for model in self._models])),
+            boundary=_stacked([model.boundary for model in self._models]),
+        )
+
+    @staticmethod
+    def _tall(of_members: Iterable[NDArray]) -> NDArray:
+        """Fields of elements on top of each other, with a row of no elements above each."""
+        return np.concatenate([np.pad(values, ((0, 1), (0, 0))) for values in of_members])
+
+    @cached_property
+    def _factors(self) -> NDArray[np.float64]:
+        """Prony coefficients as they are on the device."""
+        return np.concatenate([model.arrays.factors for model in self._models])
+
+    @cached_property
+    def stream(self) -> Any:
+        """Of the steps, and of what is copied between them."""
+        return cuda.stream()
+
+    @cached_property
+    def copies(self) -> Any:
+        """Of what is copied while steps are taken."""
+        return cuda.stream()
+
+    @property
+    def _height(self) -> int:
+        return self._models[0].mesh.X.shape[0]
+
+    @cached_property
+    def _nodes(self) -> Nodes:
+        """Fields of nodes by member."""
+        shape = (len(self._models), *self._models[0].mesh.X.shape)
+        return Nodes(*(getattr(self.resident.arrays, name).reshape(shape) for name in NODAL))
+
+    @cached_property
+    def _buffers(self) -> _Buffers:
+        count, (height, columns) = len(self._models), self._models[0].mesh.X.shape
+        return _Buffers(
+            totals=cuda.device_array((count, n_edge_nodes(height, columns), N_TOTALS)),
+            sums=cuda.to_device(np.zeros((count, height, N_SUMS))),
+            edges=cuda.device_array((count, N_TOTALS + 2)),
+            steps=cuda.device_array((count * height, columns - 1)),
+            least=cuda.device_array((count, height - 1)),
+        )
+
+    def _cooperating(self, arguments: tuple[Any, ...]) -> tuple[int, int]:
+        """Blocks and threads per block that can be on the device together, so that they may wait for each other.
+
+        A multiprocessor has one block, of as many threads as registers allow; fewer do if nodes are few.
+        """
+        if config.ENABLE_CUDASIM:
+            return 1, SIMULATED_THREADS
+        kernel, nodes = kernels.steps, len(self._models) * self._models[0].mesh.X.size
+        compiled = kernel.compile(tuple(kernel.typeof_pyval(argument) for argument in arguments))
+        threads = compiled.max_threads_per_block // WARP * WARP
+        return min(-(-nodes // threads), compiled.max_cooperative_grid_blocks(threads)), threads
+
+
+NODAL = Nodes._fields
+BY_LAYER = ("moduli", "terms", "factors")
+UNUSED = ("runs", "first_run", "shares", "nothing", "meetings")
+"""Fields of the arrays: one row per row of nodes, one per layer, and those that no kernel reads."""
+
+
+def _stacked(boundaries: Sequence[Boundary]) -> Boundary:
+    """Edge conditions on the device, each field with a leading index for the member."""
+    longest = [max(len(getattr(b, name)) for b in boundaries) for name in ("motion", "motion_across")]
+    even = [
+        b._replace(
+            motion=_lengthened(b.motion, longest[0]), motion_across=_lengthened(b.motion_across, longest[1])
+        )
+        for b in boundaries
+    ]
+    return Boundary(*(cuda.to_device(np.array(values)) for values in zip(*even, strict=True)))
+
+
+def _lengthened(motion: NDArray[np.float64], n: int) -> NDArray[np.float64]:
+    """A history of ``n`` segments that says the same: those that are missing last no time, at its end."""
+    _, t, _, U, _, V = motion[-1]
+    return np.concatenate([motion, np.tile([t, t, U, U, V, V], (n - len(motion), 1))])
+
+
+class Cuda:
+    """A :class:`~wrinklewave.dynamics.backends.Backend` of one member of a batch.
+
+    Args:
+        batch: that it is a member of.
+        place: among the members.
+        model: that it steps.
+    """
+
+    def __init__(self, batch: Batch, place: int, model: Model) -> None:
+        self._batch, self.place, self.model = batch, place, model
+        self.known_step: float | None = None  # of the present state
+
+    @property
+    def rows(self) -> slice:
+        """Its rows of elements in the tall mesh."""
+        height = self.model.mesh.X.shape[0]
+        return slice(self.place * height, (self.place + 1) * height - 1)
+
+    @property
+    def layers(self) -> slice:
+        """Its layers among those of all members."""
+        count = len(self.model.density)
+        return slice(self.place * count, (self.place + 1) * count)
+
+    def march(self, wanted: March) -> Sample:
+        """March alone."""
+        return self._batch.march({self.place: wanted})[self.place]
 
     def least_stable_step(self) -> float:
-        """The smallest of them [s]."""
-        return float(self._estimate_steps()[1].copy_to_host(stream=self._stream).min())
+        """The smallest of them [s]; a march has brought it with it."""
+        if self.known_step is None:
+            self.known_step = float(self.stable_steps().min())
+        return self.known_step
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
-        return self._estimate_steps()[0].copy_to_host(stream=self._stream)
-
-    def _estimate_steps(self) -> tuple[Any, Any]:
-        """Stable steps, and the smallest of each row, on the device."""
-        d, (of_elements, of_rows) = self._on_device, self._steps
-        launch = kernels.stable_steps[self._model.mesh.shape[0], self._threads, self._stream, self._shared]
-        launch(d.arrays, d.layer, d.density, of_elements, of_rows)
-        return self._steps
+        return self._batch.stable_steps(self)
 
     def snapshot(self) -> Callable[[], Snapshot]:
         """Compute the fields on the device; they are copied from it while the next steps are taken."""
-        d, slot = self._on_device, self._slots.pop() if self._slots else _Slot.of(self._model)
-        launch = kernels.snapshot[self._blocks, self._threads, self._stream]
-        launch(d.arrays, d.layer, d.memory, self._model.terms, slot.nodal, slot.elements)
+        batch, model = self._batch, self.model
+        slot = batch.slots.pop() if batch.slots else _Slot.of(model)
+        blocks = -(-model.mesh.X.size // batch.threads)
+        launch = kernels.snapshot[blocks, batch.threads, batch.stream]
+        own = self._own
+        launch(own.arrays, own.layer, own.memory, model.terms, slot.nodal, slot.elements)
         ready, copied = cuda.event(), cuda.event()
-        ready.record(self._stream)
-        ready.wait(self._copies)
-        slot.nodal.copy_to_host(slot.nodal_copy, stream=self._copies)
-        slot.elements.copy_to_host(slot.elements_copy, stream=self._copies)
-        copied.record(self._copies)
+        ready.record(batch.stream)
+        ready.wait(batch.copies)
+        slot.nodal.copy_to_host(slot.nodal_copy, stream=batch.copies)
+        slot.elements.copy_to_host(slot.elements_copy, stream=batch.copies)
+        copied.record(batch.copies)
 
         def wait() -> Snapshot:
             cuda.current_context()  # the device becomes that of the thread that waits
             copied.synchronize()
             found = Snapshot(slot.nodal_copy.copy(), slot.elements_copy.copy())
-            self._slots.append(slot)
+            batch.slots.append(slot)
             return found
 
         return wait
 
     def fetch_all(self) -> None:
         """Copy displacements, velocities and memory to the model."""
-        d, model = self._on_device, self._model
+        own, model, stream = self._own, self.model, self._batch.stream
         for name in ("u", "w", "vx", "vy"):
-            getattr(d.arrays, name).copy_to_host(getattr(model.arrays, name), stream=self._stream)
-        for component, kept in zip(d.memory, model.memory, strict=True):
-            component.copy_to_host(kept, stream=self._stream)
-        self._stream.synchronize()
+            getattr(own.arrays, name).copy_to_host(getattr(model.arrays, name), stream=stream)
+        for component, kept in zip(own.memory, model.memory, strict=True):
+            component.copy_to_host(kept, stream=stream)
+        stream.synchronize()
 
     @cached_property
-    def _on_device(self) -> _Resident:
-        model, (rows, columns) = self._model, self._model.mesh.shape
-        arrays = model.arrays._replace(forces=np.zeros((rows, 8, columns + 2), model.arrays.u.dtype))
-        boundary = model.boundary
-        names = ("motion", "motion_across", "old", "bins")
-        return _Resident(
-            arrays=Arrays(*map(cuda.to_device, arrays)),
-            layer=cuda.to_device(model.mesh.layer.astype(np.uint8)),
-            memory=tuple(cuda.to_device(component) for component in model.memory),
-            boundary=boundary._replace(**{name: cuda.to_device(getattr(boundary, name)) for name in names}),
-            density=cuda.to_device(model.density),
+    def _own(self) -> _Resident:
+        """Its part of what stays on the device."""
+        d, elements = self._batch.resident, self.rows
+        nodes = slice(elements.start, elements.stop + 1)
+        arrays = {name: getattr(d.arrays, name)[nodes] for name in NODAL}
+        arrays |= {name: getattr(d.arrays, name)[self.layers] for name in BY_LAYER}
+        return d._replace(
+            arrays=d.arrays._replace(**arrays),
+            layer=d.layer[elements],
+            memory=tuple(component[elements] for component in d.memory),
         )
-
-    @cached_property
-    def _stream(self) -> Any:
-        """Of the steps, and of what is copied between them."""
-        return cuda.stream()
-
-    @cached_property
-    def _copies(self) -> Any:
-        """Of what is copied while steps are taken."""
-        return cuda.stream()
-
-    @cached_property
-    def _steps(self) -> tuple[Any, Any]:
-        rows, columns = self._model.mesh.shape
-        return cuda.device_array((rows, columns)), cuda.device_array(rows)
-
-    @cached_property
-    def _buffers(self) -> _Buffers:
-        rows, columns = self._model.mesh.X.shape
-        nothing = np.zeros((n_edge_nodes(rows, columns), N_TOTALS))
-        samples = _Samples(
-            cuda.to_device(np.zeros((SAMPLES_PER_LAUNCH, rows, N_SUMS))),
-            cuda.device_array((SAMPLES_PER_LAUNCH, *nothing.shape)),
-            cuda.device_array((SAMPLES_PER_LAUNCH, 2)),
-        )
-        return _Buffers(cuda.to_device(nothing), nothing, samples)
-
-    @property
-    def _fits(self) -> bool:
-        """Whether every node can have a thread at once: a multiprocessor always holds one block."""
-        if config.ENABLE_CUDASIM:
-            return self._model.mesh.X.size <= SIMULATED_RESIDENTS
-        return self._blocks <= cuda.get_current_device().MULTIPROCESSOR_COUNT
-
-    def _march(self, n: int, group: int, times: _Times, totals: NDArray[np.float64]) -> Iterator[Sample]:
-        count, b = -(-n // group), self._buffers
-        samples = _Samples(*(sample[:count] for sample in b.samples))
-        launch = self._in_one_launch if self._fits else self._in_groups
-        b.gathered.copy_to_device(b.nothing, stream=self._stream)
-        if not self._compiled:  # no step: the time of the first ones is not to be that of the compiler
-            launch(0, group, times, b.gathered, samples)
-            self._stream.synchronize()
-            self._compiled = True
-        begin = time.perf_counter()
-        launch(n, group, times, b.gathered, samples)
-        sums, edges, corner = (sample.copy_to_host(stream=self._stream) for sample in samples)
-        self._stream.synchronize()
-        seconds = time.perf_counter() - begin
-        before = totals.copy()
-        before[FORCE] = 0.0
-        for k in range(count):
-            totals[:] = before + edges[k].sum(axis=0)
-            yield Sample(
-                steps=min(group, n - k * group),
-                seconds=seconds if k == 0 else 0.0,
-                survey=sums[k, :-1, :N_COLUMNS],
-                kinetic=float(sums[k, :, KINETIC].sum()),
-                corner=(float(corner[k, 0]), float(corner[k, 1])),
-            )
-
-    def _in_one_launch(self, n: int, group: int, times: _Times, gathered: Any, samples: _Samples) -> None:
-        d = self._on_device
-        state = (d.arrays, d.layer, d.memory, self._model.terms, d.boundary, gathered)
-        blocks = 1 if config.ENABLE_CUDASIM else self._blocks
-        kernels.march[blocks, self._threads, self._stream, self._shared](n, group, *times, *state, *samples)
-
-    def _in_groups(self, n: int, group: int, times: _Times, gathered: Any, samples: _Samples) -> None:
-        d = self._on_device
-        state = (d.arrays, d.layer, d.memory, self._model.terms)
-        blocks, rows = 0, self._model.mesh.X.shape[0]
-        for k, first in enumerate(range(0, max(n, 1), group)):
-            if first > 0:
-                times = _Times(times.t + group * times.dt, times.dt, times.dt, d.arrays.factors)
-            arguments = (min(group, n - first), *times, *state, d.boundary, gathered)
-            blocks = blocks or self._cooperating_blocks(kernels.steps, arguments)
-            kernels.steps[blocks, self._threads, self._stream](*arguments)
-            then = (samples.sums[k], samples.totals[k], samples.corner[k])
-            kernels.sample[rows, self._threads, self._stream, self._shared](times.dt, *state, gathered, *then)
-
-    def _cooperating_blocks(self, kernel: Any, arguments: tuple[Any, ...]) -> int:
-        """As many blocks as are useful and can be on the device together, so that they may wait for each other."""
-        if config.ENABLE_CUDASIM:
-            return 1
-        compiled = kernel.compile(tuple(kernel.typeof_pyval(argument) for argument in arguments))
-        return min(self._blocks, compiled.max_cooperative_grid_blocks(self._threads))

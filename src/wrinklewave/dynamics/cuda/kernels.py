@@ -1,8 +1,14 @@
 """The kernels. They share out elements, nodes, edge nodes and rows; the arithmetic is that of the processor's loops.
 
-``a`` are the :class:`~wrinklewave.dynamics.step.Arrays` on the device, with two differences: ``forces``
-[n_rows, 8, n_columns + 2] has a buffer for every row of elements, and ``layer`` [n_rows, n_columns] stands in for runs.
-All that names ``cuda`` is in this one module, as numba's simulator demands.
+The members of a batch, meshes of one shape, stand on top of each other as rows of one tall mesh: member ``b`` has the
+node rows from ``b * height`` on, and the row of elements above its top nodes, which would reach to the next member, has
+none. Their forces stay zero: they are what lies below and above a mesh. Every layer of every member is a material of
+its own. So what works on rows of elements or nodes needs to know of no batch.
+
+``a`` are the :class:`~wrinklewave.dynamics.step.Arrays` of the tall mesh, with two differences: ``forces``
+[n_tall_rows, 8, n_columns + 2] has a buffer for every row of elements, and ``layer`` [n_tall_rows, n_columns], counted
+within a member, stands in for runs. ``members`` are the places of those that take part in a launch, in the order of
+what the launch brings back. All that names ``cuda`` is in this one module, as numba's simulator demands.
 """
 
 from __future__ import annotations
@@ -10,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from numba import config, cuda, float64, uintp
+from numba import cuda, float64, uintp
 
 from wrinklewave._jit import choose_cache
 from wrinklewave.dynamics.boundary import (
@@ -18,8 +24,12 @@ from wrinklewave.dynamics.boundary import (
     FORCE,
     FREE,
     LEFT_STRAIGHT,
+    N_TOTALS,
     TOP,
+    Boundary,
+    Nodes,
     drive_position,
+    edge_node,
     hold_apart,
     hold_node,
     keep_straight,
@@ -28,6 +38,7 @@ from wrinklewave.dynamics.boundary import (
     straight_rate,
 )
 from wrinklewave.dynamics.energy import (
+    BEYOND,
     HOURGLASS_AMPLITUDE,
     J_LEAST,
     KINETIC,
@@ -40,80 +51,177 @@ from wrinklewave.dynamics.stable_step import stable_step_run
 from wrinklewave.dynamics.step import element, move_row
 
 BLOCK = 256
-"""Threads per block on a device; kernels work with fewer, if a power of two."""
+"""Threads per block on a device, of kernels that add up by halves; they work with fewer, if a power of two."""
+START, LAST_DT, DT = range(3)
+"""Columns of ``times``: time of the present positions, the step that led to them, the step to take [s]."""
 
 
-def _kernel(**options: Any) -> Callable[[Callable[..., Any]], Any]:
-    """Compile when first launched, and keep it on disk; the simulator knows no options."""
-
-    def compile_lazily(function: Callable[..., Any]) -> Any:
-        choose_cache(function)
-        return cuda.jit(cache=True, **({} if config.ENABLE_CUDASIM else options))(function)
-
-    return compile_lazily
+def _kernel(function: Callable[..., Any]) -> Any:
+    """Compile when first launched, and keep it on disk."""
+    choose_cache(function)
+    return cuda.jit(cache=True)(function)
 
 
 @cuda.jit(device=True)
-def _elements(first, a, factors, layer, memory, terms, boundary):
-    """Forces of all elements; and what the edges have to remember of the state before the step."""
-    rows, columns = layer.shape
-    for e in range(first, rows * columns, cuda.gridsize(1)):
-        j = e // columns
-        i = e - j * columns
-        n = layer[j, i]
-        b, moduli, forces = factors[n], a.moduli[n], a.forces[j]
+def _elements(active, members, height, factors, a, layer, memory, terms):
+    """Forces of all elements of the first ``active`` members."""
+    columns = layer.shape[1]
+    each = (height - 1) * columns
+    n_layers = a.moduli.shape[0] // (layer.shape[0] // height)
+    for e in range(cuda.grid(1), active * each, cuda.gridsize(1)):
+        b = members[e // each]
+        j = e % each // columns
+        i = e % each - j * columns
+        j += b * height
+        n = b * n_layers + layer[j, i]
+        forces, moduli = a.forces[j], a.moduli[n]
         r, c = uintp(j), uintp(i)
-        element(r, c, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, b, moduli, forces)
-    for n in range(first, n_edge_nodes(rows + 1, columns + 1), cuda.gridsize(1)):
-        remember_node(n, a, boundary)
+        element(r, c, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors[n], moduli, forces)
 
 
 @cuda.jit(device=True)
-def _nodes(first, dt_velocity, dt, a):
-    """Move all nodes freely."""
-    rows, columns = a.u.shape
-    for p in range(first, rows * columns, cuda.gridsize(1)):
-        j = p // columns
-        i = p - j * columns
-        below = a.forces[j - 1] if j > 0 else a.nothing
-        above = a.forces[j] if j < rows - 1 else a.nothing
-        move_row(j, i, i + 1, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+def _move(j, i, dt_velocity, dt, a):
+    """Move one node freely. Below the first row of elements comes the last: the forces of either are zero."""
+    below, above = a.forces[j - 1], a.forces[j]
+    move_row(j, i, i + 1, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
 @cuda.jit(device=True)
-def _overhangs(a, row):
+def _inner_nodes(step, active, members, height, times, a):
+    """Move all nodes but those at the edges; the first blocks, which have the edges, have the fewest of them."""
+    columns = a.u.shape[1] - 2
+    each = (height - 2) * columns
+    for p in range(cuda.gridsize(1) - 1 - cuda.grid(1), active * each, cuda.gridsize(1)):
+        k = p // each
+        j = p % each // columns
+        i = p % each - j * columns
+        dt = times[k, DT]
+        dt_before = times[k, LAST_DT] if step == 0 else dt
+        _move(members[k] * height + 1 + j, 1 + i, 0.5 * (dt_before + dt), dt, a)
+
+
+@cuda.jit(device=True)
+def _nodes_of(b, nodes):
+    """Nodes of one member."""
+    X, Y, inverse_mass = nodes.X[b], nodes.Y[b], nodes.inverse_mass[b]
+    return Nodes(X, Y, nodes.u[b], nodes.w[b], nodes.vx[b], nodes.vy[b], inverse_mass)
+
+
+@cuda.jit(device=True)
+def _boundary_of(b, of_all):
+    """Edge conditions of one member."""
+    return Boundary(
+        of_all.left[b],
+        of_all.right[b],
+        of_all.top[b],
+        of_all.bottom[b],
+        of_all.wall[b],
+        of_all.length[b],
+        of_all.friction[b],
+        of_all.motion[b],
+        of_all.motion_across[b],
+        of_all.old[b],
+        of_all.bins[b],
+        of_all.slipping[b],
+    )
+
+
+@cuda.jit(device=True)
+def _move_edges(b, dt_velocity, dt, a, nodes, boundary):
+    """Remember and move the edge nodes of a member, by one block."""
+    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
+    rows, columns = own.u.shape
+    for n in range(cuda.threadIdx.x, n_edge_nodes(rows, columns), cuda.blockDim.x):
+        j, i = edge_node(n, rows, columns)[2:]
+        remember_node(n, own, edges)
+        _move(b * rows + j, i, dt_velocity, dt, a)
+
+
+@cuda.jit(device=True)
+def _overhangs(nodes, row):
     """Whether this thread sees a surface that folds; only then can it touch itself."""
-    for i in range(cuda.threadIdx.x, a.u.shape[1] - 1, cuda.blockDim.x):
-        if a.X[row, i + 1] + a.u[row, i + 1] < a.X[row, i] + a.u[row, i]:
+    for i in range(cuda.threadIdx.x, nodes.u.shape[1] - 1, cuda.blockDim.x):
+        if nodes.X[row, i + 1] + nodes.u[row, i + 1] < nodes.X[row, i] + nodes.u[row, i]:
             return 1
     return 0
 
 
 @cuda.jit(device=True)
-def _edges(t, dt, a, boundary, totals):
-    """Conditions at the edges, by one block; ``totals`` [n_edge_nodes, N_TOTALS] are gathered node by node."""
-    thread, threads = cuda.threadIdx.x, cuda.blockDim.x
-    rows = a.u.shape[0]
-    if boundary.bins.shape[2] > 0:
-        folded = 0
-        if boundary.top == FREE:
-            folded += _overhangs(a, rows - 1)
-        if boundary.bottom == FREE:
-            folded += _overhangs(a, 0)
-        if cuda.syncthreads_or(folded) and thread == 0:
-            hold_apart(BOTTOM, dt, a, boundary, totals[0])
-            hold_apart(TOP, dt, a, boundary, totals[rows - 1])
-        cuda.syncthreads()
-    drive = drive_position(t, dt, boundary)
-    for n in range(thread, n_edge_nodes(rows, a.u.shape[1]), threads):
-        totals[n, FORCE] = 0.0
-        hold_node(n, drive, dt, a, boundary, totals[n])
-    if boundary.left == LEFT_STRAIGHT:
-        cuda.syncthreads()
-        rate = straight_rate(a)
-        cuda.syncthreads()
-        for j in range(thread, rows, threads):
-            keep_straight(j, rate, dt, a, boundary)
+def _hold_apart(b, dt, nodes, boundary, totals):
+    """Contact of a member's free surfaces with themselves, by one thread of its block if there is any."""
+    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
+    last = own.u.shape[0] - 1
+    folded = 0
+    if edges.top == FREE:
+        folded += _overhangs(own, last)
+    if edges.bottom == FREE:
+        folded += _overhangs(own, 0)
+    if cuda.syncthreads_or(folded) and cuda.threadIdx.x == 0:
+        for edge in range(BOTTOM, TOP + 1):
+            hold_apart(edge, dt, own, edges, totals[b, 0 if edge == BOTTOM else last])
+
+
+@cuda.jit(device=True)
+def _hold(b, t, dt, nodes, boundary, totals):
+    """Conditions at the edges of a member at time ``t``, by one block."""
+    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
+    drive = drive_position(t, dt, edges)
+    for n in range(cuda.threadIdx.x, totals.shape[1], cuda.blockDim.x):
+        totals[b, n, FORCE] = 0.0
+        hold_node(n, drive, dt, own, edges, totals[b, n])
+
+
+@cuda.jit(device=True)
+def _keep_straight(b, dt, nodes, boundary):
+    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
+    rate = straight_rate(own)
+    cuda.syncthreads()
+    for j in range(cuda.threadIdx.x, own.u.shape[0], cuda.blockDim.x):
+        keep_straight(j, rate, dt, own, edges)
+
+
+@cuda.jit(device=True)
+def _edges(step, active, members, times, a, nodes, boundary, totals):
+    """Move the edge nodes and see to their conditions, a block for each member.
+
+    Each part finds the member's arrays anew: to keep them at hand from one to the next takes registers.
+    """
+    for k in range(cuda.blockIdx.x, active, cuda.gridDim.x):
+        b, dt = members[k], times[k, DT]
+        dt_before = times[k, LAST_DT] if step == 0 else dt
+        _move_edges(b, 0.5 * (dt_before + dt), dt, a, nodes, boundary)
+        if boundary.bins.shape[3] > 0:
+            cuda.syncthreads()
+            _hold_apart(b, dt, nodes, boundary, totals)
+            cuda.syncthreads()
+        _hold(b, times[k, START] + (step + 1) * dt, dt, nodes, boundary, totals)
+        if boundary.left[b] == LEFT_STRAIGHT:
+            cuda.syncthreads()
+            _keep_straight(b, dt, nodes, boundary)
+
+
+@_kernel
+def steps(n, members, times, first_factors, a, layer, memory, terms, nodes, boundary, totals):
+    """Take ``n[k]`` steps with each member, those with the most coming first; ``times`` are [n_members, 3].
+
+    The Prony coefficients of the first step, ``first_factors``, follow on a step of another length than the rest.
+    ``nodes`` are those of ``a`` by member, [n_batch, height, n_columns + 1]; ``totals`` [n_batch, n_edge_nodes,
+    N_TOTALS] are gathered node by node.
+    """
+    grid = cuda.cg.this_grid()
+    height, active = nodes.u.shape[1], members.shape[0]
+    for q in range(cuda.grid(1), active * totals.shape[1], cuda.gridsize(1)):
+        for total in range(N_TOTALS):
+            totals[members[q // totals.shape[1]], q % totals.shape[1], total] = 0.0
+    for step in range(n[0]):
+        while n[active - 1] <= step:
+            active -= 1
+        factors = first_factors if step == 0 else a.factors
+        _elements(active, members, height, factors, a, layer, memory, terms)
+        grid.sync()
+        _edges(step, active, members, times, a, nodes, boundary, totals)
+        _inner_nodes(step, active, members, height, times, a)
+        grid.sync()
 
 
 @cuda.jit(device=True)
@@ -126,7 +234,7 @@ def _combined(column, x, y):
 
 @cuda.jit(device=True)
 def _total(column, value, shared):
-    """The block's values as one, in a fixed order; for thread 0."""
+    """The block's values as one, in a fixed order; for all threads."""
     thread, half = cuda.threadIdx.x, cuda.blockDim.x // 2
     shared[thread] = value
     cuda.syncthreads()
@@ -141,109 +249,77 @@ def _total(column, value, shared):
 
 
 @cuda.jit(device=True)
-def _sums(dt, a, layer, memory, terms, sums):
-    """Sums of each row by one block, in an order that the size of the grid does not change.
+def _sum_up_row(j, first_layer, dt, a, layer, memory, terms, shared, sums):
+    """Sums of row ``j`` of elements by one block, in an order that the size of the grid does not change.
 
     The contributions of the elements lie where their forces were: the next step computes those anew.
     """
+    thread, threads, columns = cuda.threadIdx.x, cuda.blockDim.x, layer.shape[1]
+    work = a.forces[j][:, 1:-1]
+    for i in range(thread, columns, threads):
+        survey_run(j, i, i + 1, first_layer + layer[j, i], dt, a, memory, terms, work)
+    for column in range(N_COLUMNS):
+        value = BEYOND if column == J_LEAST else 0.0
+        for i in range(thread, columns, threads):
+            value = _combined(column, value, work[column, i])
+        sums[column] = _total(column, value, shared)
+
+
+@_kernel
+def sample(members, times, a, layer, memory, terms, totals, sums, edges):
+    """The present state in numbers: ``sums`` [n_members, height, N_SUMS] by rows, and of the ``edges``
+    [n_members, N_TOTALS + 2] what they have gathered, and the displacement of the struck end's top corner.
+    """
     shared = cuda.shared.array(0, float64)  # as much as the launch asks for
     thread, threads = cuda.threadIdx.x, cuda.blockDim.x
-    rows, columns = layer.shape
-    for j in range(cuda.blockIdx.x, rows + 1, cuda.gridDim.x):
+    n_batch, n_edge, columns = totals.shape[0], totals.shape[1], layer.shape[1]
+    height, n_layers = layer.shape[0] // n_batch, a.moduli.shape[0] // n_batch
+    for q in range(cuda.blockIdx.x, members.shape[0] * height, cuda.gridDim.x):
+        k = q // height
+        r = q - k * height
+        b = members[k]
+        j = b * height + r
         value = 0.0
         for i in range(thread, columns + 1, threads):
             value += kinetic_energy(a.inverse_mass[j, i], a.vx[j, i], a.vy[j, i])
-        sums[j, KINETIC] = _total(KINETIC, value, shared)
-        if j == rows:
+        sums[k, r, KINETIC] = _total(KINETIC, value, shared)
+        if r < height - 1:
+            _sum_up_row(j, b * n_layers, times[k, DT], a, layer, memory, terms, shared, sums[k, r])
             continue
-        work = a.forces[j][:, 1:-1]
-        for i in range(thread, columns, threads):
-            survey_run(j, i, i + 1, layer[j, i], dt, a, memory, terms, work)
-        for column in range(N_COLUMNS):
-            value = 1e300 if column == J_LEAST else 0.0
-            for i in range(thread, columns, threads):
-                value = _combined(column, value, work[column, i])
-            sums[j, column] = _total(column, value, shared)
+        for total in range(N_TOTALS):
+            value = 0.0
+            for n in range(thread, n_edge, threads):
+                value += totals[b, n, total]
+            edges[k, total] = _total(KINETIC, value, shared)
+        edges[k, N_TOTALS], edges[k, N_TOTALS + 1] = a.u[j, 0], a.w[j, 0]
 
 
-@cuda.jit(device=True)
-def _steps(n, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals):
-    """Take ``n`` steps of ``dt`` from time ``t``; the Prony coefficients of the first follow on one of ``dt_last``."""
-    grid = cuda.cg.this_grid()
-    first = cuda.grid(1)
-    for step in range(n):
-        dt_before = dt_last if step == 0 else dt
-        _elements(first, a, first_factors if step == 0 else a.factors, layer, memory, terms, boundary)
-        grid.sync()
-        _nodes(first, 0.5 * (dt_before + dt), dt, a)
-        grid.sync()
-        if cuda.blockIdx.x == 0:
-            _edges(t + (step + 1) * dt, dt, a, boundary, totals)
-        grid.sync()
-
-
-@cuda.jit(device=True)
-def _sample(dt, a, layer, memory, terms, totals, sums, totals_now, corner):
-    """The present state in numbers: ``sums`` [n_rows + 1, N_SUMS], ``totals_now`` as ``totals``, ``corner`` [2]."""
-    _sums(dt, a, layer, memory, terms, sums)
-    first = cuda.grid(1)
-    for n in range(first, totals.shape[0], cuda.gridsize(1)):
-        for k in range(totals.shape[1]):
-            totals_now[n, k] = totals[n, k]
-    if first == 0:
-        corner[0], corner[1] = a.u[-1, 0], a.w[-1, 0]
-
-
-@_kernel(max_registers=128)
-def steps(n, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals):
-    """Steps alone, with registers for half as many threads again: for meshes that take all of them."""
-    _steps(n, t, dt_last, dt, first_factors, a, layer, memory, terms, boundary, totals)
-
-
-@_kernel()
-def sample(dt, a, layer, memory, terms, totals, sums, totals_now, corner):
-    """A sample alone."""
-    _sample(dt, a, layer, memory, terms, totals, sums, totals_now, corner)
-
-
-@_kernel()
-def march(
-    n,
-    group,
-    t,
-    dt_last,
-    dt,
-    first_factors,
-    a,
-    layer,
-    memory,
-    terms,
-    boundary,
-    totals,
-    sums,
-    totals_then,
-    corner,
-):
-    """``n`` steps, and a sample after every ``group`` of them and at the end: for meshes with a thread for every node.
-
-    Samples are the first index of ``sums``, ``totals_then`` and ``corner``.
+@_kernel
+def stable_steps(n_batch, members, a, layer, density, out, least):
+    """Largest stable step of each element [s], ``out`` as ``layer``, and the ``least`` of each row
+    [n_members, height - 1].
     """
-    grid = cuda.cg.this_grid()
-    done = 0
-    while done < n:
-        count = min(group, n - done)
-        dt_before, factors = dt_last if done == 0 else dt, first_factors if done == 0 else a.factors
-        _steps(count, t + done * dt, dt_before, dt, factors, a, layer, memory, terms, boundary, totals)
-        k = done // group
-        _sample(dt, a, layer, memory, terms, totals, sums[k], totals_then[k], corner[k])
-        grid.sync()
-        done += count
+    shared = cuda.shared.array(0, float64)  # as much as the launch asks for
+    thread, threads, columns = cuda.threadIdx.x, cuda.blockDim.x, layer.shape[1]
+    height, n_layers, rows = layer.shape[0] // n_batch, a.moduli.shape[0] // n_batch, least.shape[1]
+    for q in range(cuda.blockIdx.x, members.shape[0] * rows, cuda.gridDim.x):
+        k = q // rows
+        r = q - k * rows
+        b = members[k]
+        j = b * height + r
+        value = BEYOND
+        for i in range(thread, columns, threads):
+            stable_step_run(j, i, i + 1, b * n_layers + layer[j, i], a, density, out)
+            value = _combined(J_LEAST, value, out[j, i])
+        least[k, r] = _total(J_LEAST, value, shared)
 
 
-@_kernel()
+@_kernel
 def snapshot(a, layer, memory, terms, nodal, elements):
-    """The present state: ``nodal`` [4, ...] u, w, vx, vy, and the fields, ``elements`` [len(FIELDS), ...]."""
-    rows, columns = layer.shape
+    """The present state of one member, whose rows alone all arguments have: ``nodal`` [4, ...] u, w, vx, vy, and the
+    fields, ``elements`` [len(FIELDS), ...].
+    """
+    rows, columns = elements.shape[1:]
     for e in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
         j = e // columns
         i = e - j * columns
@@ -254,17 +330,3 @@ def snapshot(a, layer, memory, terms, nodal, elements):
         i = p - j * columns
         nodal[0, j, i], nodal[1, j, i] = a.u[j, i], a.w[j, i]
         nodal[2, j, i], nodal[3, j, i] = a.vx[j, i], a.vy[j, i]
-
-
-@_kernel()
-def stable_steps(a, layer, density, out, least):
-    """Largest stable step of each element [s], ``out`` [n_rows, n_columns], and the ``least`` of each row [n_rows]."""
-    shared = cuda.shared.array(0, float64)  # as much as the launch asks for
-    thread, threads = cuda.threadIdx.x, cuda.blockDim.x
-    rows, columns = layer.shape
-    for j in range(cuda.blockIdx.x, rows, cuda.gridDim.x):
-        value = 1e300
-        for i in range(thread, columns, threads):
-            stable_step_run(j, i, i + 1, layer[j, i], a, density, out)
-            value = _combined(J_LEAST, value, out[j, i])
-        least[j] = _total(J_LEAST, value, shared)
