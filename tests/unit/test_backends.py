@@ -1,20 +1,16 @@
 """Processor and GPU do the same: one set of runs, one test body. Without a GPU, numba simulates one."""
 
 import json
-import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 from support.backend_models import BATCHES, EVENTS, MODELS, SHEAR
+from support.elsewhere import environment, run_elsewhere
 from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, WORK, position
-from wrinklewave.environment import gpus
 
-TESTS = Path(__file__).parents[1]
-SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1", "NUMBA_DISABLE_JIT": "1"}
 AGREEMENT = 1e-11
 """Relative to the largest value: rounding, in another order on each device, grown over a hundred steps at most."""
 MIXED_AGREEMENT = 2e-5
@@ -23,18 +19,6 @@ STATE = ("u", "w", "vx", "vy", "memory", "fields", "totals")
 EXACT = ("step", "time_s")
 
 Runs = dict[str, np.ndarray]
-
-
-def environment() -> dict[str, str]:
-    path = os.pathsep.join([str(TESTS), str(TESTS.parent / "src"), os.environ.get("PYTHONPATH", "")])
-    return os.environ | {"PYTHONPATH": path}
-
-
-def run_elsewhere(module: str, device: str, file: Path, choices: dict[str, str] | None = None) -> None:
-    """Run a module in a process of its own, which simulates a GPU if it is asked for one and there is none."""
-    simulated = SIMULATED if device == "cuda" and isinstance(gpus(), str) else {}
-    command = [sys.executable, "-m", module, device, str(file)]
-    subprocess.run(command, env=environment() | simulated | (choices or {}), check=True)
 
 
 def can_compile() -> bool:
@@ -54,7 +38,7 @@ def runs(tmp_path_factory) -> dict[str, Runs]:
     found = {}
     for device in ("cpu", "cuda"):
         file = tmp_path_factory.mktemp("runs") / f"{device}.npz"
-        run_elsewhere("support.backend_runs", device, file)
+        run_elsewhere("support.backend_runs", device, device, str(file))
         with np.load(file) as data:
             found[device] = dict(data)
     return found
@@ -93,7 +77,8 @@ def test_a_new_law_needs_no_line_for_a_device(runs, tmp_path):
     found = {}
     for device in ("cpu", "cuda"):
         file = tmp_path / f"{device}.npz"
-        run_elsewhere("support.new_law", device, file, {"NUMBA_CACHE_DIR": str(tmp_path / "kernels")})
+        kernels = {"NUMBA_CACHE_DIR": str(tmp_path / "kernels")}
+        run_elsewhere("support.new_law", device, device, str(file), choices=kernels)
         with np.load(file) as data:
             found[device] = dict(data)
     for key in STATE:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ import numpy as np
 from wrinklewave.analysis.analyse import analyse
 from wrinklewave.analysis.filters import check_cutoff
 from wrinklewave.config import Case, load_case
+from wrinklewave.dynamics.asking import answered
 from wrinklewave.dynamics.checkpoint import read_checkpoint, write_checkpoint
 from wrinklewave.dynamics.model import build_model
 from wrinklewave.dynamics.simulation import HISTORY, Simulation
@@ -30,11 +32,13 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wrinklewave.analysis.results import Analysis
-    from wrinklewave.dynamics.backends import Device
+    from wrinklewave.dynamics.backends import Device, March, Sample
     from wrinklewave.experiments.vtkhdf import FieldFrame
     from wrinklewave.mesh.block import GridMesh
 
 
+Interruptible = Callable[[], AbstractContextManager[Callable[[], bool]]]
+"""Makes a context with a function that tells whether an interrupt has come."""
 MEANINGFUL_SHARE = 0.05
 """Part of the run after which its imbalance of energy is shown: before, there is hardly any work to compare it with."""
 
@@ -135,35 +139,64 @@ def simulate(
         RunError: if the simulation cannot go on; what was computed is kept in ``out``.
     """
     case = _resolved(case, overrides)
-    check_cutoff(case.analysis.filter_wavelength, laboratory_grid(case)[1])
     threads, chosen = _use_threads(threads), choose_device(device)
-    folder = RunFolder.prepare(Path(out), case, resume=resume, overwrite=overwrite) if out else None
-    place = folder.path if folder else None
-    simulation, recording = _start(case, threads, chosen, folder, resume)
-    mesh, store = simulation.model.mesh, recording.fields
-    begin = time.perf_counter()
-    try:
-        outcome = _run(case, simulation, recording, folder, progress)
-    except RunError as error:
-        run = Run(case, Outcome.FAILED, _history(simulation), store, mesh, folder=place)
-        run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin) | {
-            "message": str(error)
-        }
-        if folder:
-            folder.write_unfinished(run)
-            raise RunError(f"{error}\n  {folder.describe_checkpoint()}") from error
-        raise
-    run = Run(case, outcome, _history(simulation), store, mesh, folder=place)
-    if outcome is Outcome.FINISHED:
-        run.surface = simulated_surface(case, mesh.X[-1], recording.surface.to_record())
-        run.analysis = analyse(run.surface, case.analysis)
-        run.snapshots = store.nearest(case.analysis.times)
-    run.summary = run_summary(run, simulation, threads, time.perf_counter() - begin)
-    if folder:
-        folder.write_finished(run) if run.surface is not None else folder.write_unfinished(run)
-        if run.surface is not None and not keep_checkpoint:
-            folder.close(run)
-    return run
+    started = start(case, out, threads=threads, device=chosen, resume=resume, overwrite=overwrite)
+    running = started.to_the_end(interruptible, progress, keep_checkpoint=keep_checkpoint)
+    return answered(running, started.simulation.backend.march)
+
+
+@dataclass(frozen=True, eq=False)
+class Started:
+    """A run that can go on: from rest, or from a checkpoint."""
+
+    case: Case
+    simulation: Simulation
+    recording: Recording
+    folder: RunFolder | None
+    threads: int
+
+    def to_the_end(
+        self,
+        interruptible: Interruptible,
+        progress: Callable[[Progress], None],
+        *,
+        keep_checkpoint: bool = False,
+    ) -> Generator[March, Sample, Run]:
+        """Ask for all marches, and write what they lead to; returns the run.
+
+        Raises:
+            RunError: as :func:`simulate`.
+        """
+        begin = time.perf_counter()
+        try:
+            with interruptible() as wished, self.recording:
+                outcome = yield from _run(self, wished, progress)
+        except RunError as error:
+            run = self._run(Outcome.FAILED)
+            run.summary = self._summary(run, begin) | {"message": str(error)}
+            if self.folder:
+                self.folder.write_unfinished(run)
+                raise RunError(f"{error}\n  {self.folder.describe_checkpoint()}") from error
+            raise
+        run = self._run(outcome)
+        if outcome is Outcome.FINISHED:
+            run.surface = simulated_surface(self.case, run.mesh.X[-1], self.recording.surface.to_record())
+            run.analysis = analyse(run.surface, self.case.analysis)
+            run.snapshots = run.fields.nearest(self.case.analysis.times)
+        run.summary = self._summary(run, begin)
+        if self.folder:
+            self.folder.write_finished(run) if run.surface is not None else self.folder.write_unfinished(run)
+            if run.surface is not None and not keep_checkpoint:
+                self.folder.close(run)
+        return run
+
+    def _run(self, outcome: Outcome) -> Run:
+        history, mesh = _history(self.simulation), self.simulation.model.mesh
+        place = self.folder.path if self.folder else None
+        return Run(self.case, outcome, history, self.recording.fields, mesh, folder=place)
+
+    def _summary(self, run: Run, begin: float) -> dict[str, Any]:
+        return run_summary(run, self.simulation, self.threads, time.perf_counter() - begin)
 
 
 def _resolved(case: Case | str | Path, overrides: Sequence[str]) -> Case:
@@ -188,9 +221,22 @@ def output_times(interval: float, end: float) -> NDArray[np.float64]:
     return np.append(np.arange(0.0, end - interval * 1e-6, interval), end)
 
 
-def _start(
-    case: Case, threads: int, device: Device, folder: RunFolder | None, resume: bool
-) -> tuple[Simulation, Recording]:
+def start(
+    case: Case,
+    out: str | Path | None,
+    *,
+    threads: int = 1,
+    device: Device = "cpu",
+    resume: bool = False,
+    overwrite: bool = False,
+) -> Started:
+    """Make the folder of a run ready and build its model, at rest or in the state of the checkpoint to go on from.
+
+    Raises:
+        InputError: if the case, or what the folder holds, does not allow the run.
+    """
+    check_cutoff(case.analysis.filter_wavelength, laboratory_grid(case)[1])
+    folder = RunFolder.prepare(Path(out), case, resume=resume, overwrite=overwrite) if out else None
     end = case.solver.end_time
     surface_times, field_times = (
         np.round(output_times(interval, end), 12)
@@ -209,16 +255,14 @@ def _start(
         surface.restore(read_checkpoint(folder.checkpoint, simulation, case.to_toml()))
         folder.require_fields()
     file = FieldFile(folder.fields, mesh, field_times) if folder else None
-    return simulation, Recording(frozenset(surface_times), surface, FieldStore(field_times, file))
+    recording = Recording(frozenset(surface_times), surface, FieldStore(field_times, file))
+    return Started(case, simulation, recording, folder, threads)
 
 
 def _run(
-    case: Case,
-    simulation: Simulation,
-    recording: Recording,
-    folder: RunFolder | None,
-    progress: Callable[[Progress], None],
-) -> Outcome:
+    started: Started, wished: Callable[[], bool], progress: Callable[[Progress], None]
+) -> Generator[March, Sample, Outcome]:
+    case, simulation, recording, folder = started.case, started.simulation, started.recording, started.folder
     begin = saved = time.perf_counter()
     clock = Clock(simulation)
 
@@ -227,18 +271,18 @@ def _run(
             recording.flush()
             write_checkpoint(folder.checkpoint, simulation, recording.surface.to_record(), case.to_toml())
 
-    with interruptible() as wished, recording:
-        for event in simulation.run():
-            recording.take(event.time, simulation)
-            now = time.perf_counter()
-            progress(_progress(simulation, now - begin, clock.seconds_left()))
-            if wished():
-                save()
-                return Outcome.INTERRUPTED
-            if now - saved > case.solver.checkpoint_interval:
-                save()
-                saved = now
-        save()  # so that an interrupt while results are written costs none of the steps
+    while simulation.has_events:
+        event = yield from simulation.to_next_event()
+        recording.take(event.time, simulation)
+        now = time.perf_counter()
+        progress(_progress(simulation, now - begin, clock.seconds_left()))
+        if wished():
+            save()
+            return Outcome.INTERRUPTED
+        if now - saved > case.solver.checkpoint_interval:
+            save()
+            saved = now
+    save()  # so that an interrupt while results are written costs none of the steps
     return Outcome.FINISHED
 
 

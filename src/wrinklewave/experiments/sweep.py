@@ -15,12 +15,15 @@ from wrinklewave.config import Case, load_case
 from wrinklewave.config.overrides import alternatives
 from wrinklewave.environment import choose_device, processor
 from wrinklewave.errors import InputError
+from wrinklewave.experiments.batch import batches
 from wrinklewave.experiments.interruption import Outcome, interruptible
 from wrinklewave.experiments.sweep_table import write_tables
-from wrinklewave.experiments.sweep_workers import Workers, run_member
+from wrinklewave.experiments.sweep_workers import Workers, run_batch, run_member
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from wrinklewave.dynamics.backends import Device
 
 PATIENCE = 0.2
 """Seconds between two looks at whether an interrupt has come."""
@@ -89,7 +92,7 @@ def sweep(
         over: the axes, each ``"key=value, value, ..."``.
         out: folder for the runs, the dataset ``sweep.nc`` and the table ``sweep.csv``.
         overrides: ``"key=value"`` for all runs.
-        jobs: runs at a time, each in a process and on a thread of its own; default one per core, and one on a GPU.
+        jobs: processes, default one per core. Each has one run at a time, on one thread; on a GPU a batch of them.
         device: as for :func:`simulate`.
         resume: go on with the sweep in ``out``: runs that have ended stay as they are, others go on.
         overwrite: replace an earlier sweep in ``out``.
@@ -105,24 +108,30 @@ def sweep(
     members = list(_members(case, axes, overrides, Path(out)))
     chosen = choose_device(device)
     _prepare(members, Path(out), resume=resume, overwrite=overwrite)
-    jobs = jobs or (processor().usable if chosen == "cpu" else 1)
+    left = [member for member in members if _ended(member) is None]
+    jobs = min(jobs or processor().usable, len(members))
+    done = already = len(members) - len(left)
     begin = time.perf_counter()
-    summaries = {id(m): s for m in members if (s := _ended(m)) is not None}
-    with Workers(min(jobs, len(members))) as workers, interruptible() as wished:
-        waiting: dict[Future[dict[str, Any]], Member] = {
-            workers.submit(run_member, member.case, member.folder, chosen): member
-            for member in members
-            if id(member) not in summaries
-        }
-        total = len(waiting)
+    with Workers(jobs) as workers, interruptible() as wished:
+        waiting = _submit(left, workers, jobs, chosen)
         while waiting and not wished():
             for future in wait(waiting, PATIENCE, FIRST_COMPLETED).done:
-                member = waiting.pop(future)
-                summary = summaries[id(member)] = future.result()
-                pace = 60 * (total - len(waiting)) / (time.perf_counter() - begin)
-                progress(SweepProgress(len(members) - len(waiting), len(members), member.name, summary, pace))
-    table = write_tables(Path(out), axes, [(m, summaries.get(id(m), {})) for m in members])
+                for member, summary in zip(waiting.pop(future), future.result(), strict=True):
+                    done += 1
+                    pace = 60 * (done - already) / (time.perf_counter() - begin)
+                    progress(SweepProgress(done, len(members), member.name, summary, pace))
+    table = write_tables(Path(out), axes, [(member, _ended(member) or {}) for member in members])
     return (Outcome.INTERRUPTED if waiting else Outcome.FINISHED), table
+
+
+def _submit(
+    members: Sequence[Member], workers: Workers, jobs: int, device: Device
+) -> dict[Future[list[dict[str, Any]]], list[Member]]:
+    """Have members run, one by one or in batches; their summaries will be the results."""
+    if device == "cpu" or not members:
+        return {workers.submit(run_member, member.case, member.folder): [member] for member in members}
+    together = [[members[place] for place in places] for places in batches([m.case for m in members], jobs)]
+    return {workers.submit(run_batch, [(m.case, m.folder) for m in batch]): batch for batch in together}
 
 
 def _members(
@@ -169,9 +178,11 @@ def _prepare(members: Sequence[Member], out: Path, *, resume: bool, overwrite: b
 
 
 def _ended(member: Member) -> dict[str, Any] | None:
-    """Summary of a run that has ended, well or not."""
+    """Summary of a run that has ended; of one that failed its message alone."""
     file = member.folder / "summary.json"
     if not file.exists():
         return None
     summary: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    if summary["outcome"] == Outcome.FAILED.name.lower():
+        return {name: summary[name] for name in ("outcome", "message")}
     return None if summary["outcome"] == Outcome.INTERRUPTED.name.lower() else summary

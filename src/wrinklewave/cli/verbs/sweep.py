@@ -29,7 +29,12 @@ Out = Annotated[
 ]
 Jobs = Annotated[
     int | None,
-    typer.Option("--jobs", metavar="N", min=1, help="Runs at a time, one thread each; default one per core."),
+    typer.Option(
+        "--jobs",
+        metavar="N",
+        min=1,
+        help="Processes, each with one run at a time, or with a batch of runs on a GPU; default one per core.",
+    ),
 ]
 Resume = Annotated[bool, typer.Option("--resume", help="Go on with the sweep in DIR.")]
 

@@ -28,6 +28,12 @@ if TYPE_CHECKING:
 SIMULATED_THREADS = 4
 """In numba's simulator every thread is one of Python's."""
 WARP = 32
+MOST_MEMBERS = 64
+"""Of a batch: more do not fill a device any better, and keep more results waiting."""
+USED_MEMORY = 0.8
+"""Part of the device's free memory that batches may take."""
+FORCES, OUTPUTS = 8, 6
+"""Components of the forces on an element; snapshots of a member that may wait at the same time, and one more."""
 
 config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # meshes too small to fill a GPU are no mistake
 
@@ -75,6 +81,14 @@ def shape_of(model: Model) -> tuple[Any, ...]:
     """What models must have in common to be members of one batch."""
     a, boundary = model.arrays, model.boundary
     return a.X.shape, a.u.dtype, model.memory.shape, a.terms.shape, boundary.old.shape, boundary.bins.shape
+
+
+def most_members(model: Model, batches: int) -> int:
+    """How many models of one shape each of some batches can have, as far as the device's memory goes."""
+    a, outputs = model.arrays, 4 * model.mesh.X.size + len(FIELDS) * model.mesh.n_elements
+    state = (len(NODAL) + FORCES) * a.u.nbytes + model.memory.nbytes + 8 * model.mesh.n_elements
+    free = USED_MEMORY * cuda.current_context().get_memory_info().free / batches
+    return max(1, int(min(MOST_MEMBERS, free / (state + 8 * OUTPUTS * outputs))))
 
 
 class Batch:
