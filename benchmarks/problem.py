@@ -46,8 +46,8 @@ class Problem:
         rows, columns = self.model.mesh.shape
         return a._replace(
             shares=np.linspace(0, rows, threads + 1).astype(np.int64),
-            forces=np.zeros((threads, 3, 8, columns + 2), a.u.dtype),
-            meetings=np.zeros(threads * LINE, dtype=np.int64),
+            forces=np.zeros((threads, 4, 8, columns + 2), a.u.dtype),
+            counts=np.zeros((3, threads * LINE), dtype=np.int64),
         )
 
     def copy(self) -> Problem:

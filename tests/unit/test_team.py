@@ -17,8 +17,8 @@ def marched(name: str, parts: int, steps: int = 120, dt: float = 4e-7) -> dict[s
     rows, columns = model.mesh.shape
     arrays = model.arrays._replace(
         shares=np.linspace(0, rows, parts + 1).astype(np.int64),
-        forces=np.zeros((parts, 3, 8, columns + 2), model.arrays.u.dtype),
-        meetings=np.zeros(parts * LINE, dtype=np.int64),
+        forces=np.zeros((parts, 4, 8, columns + 2), model.arrays.u.dtype),
+        counts=np.zeros((3, parts * LINE), dtype=np.int64),
     )
     advance(steps, 0.0, 0.0, dt, arrays, model.memory_rows, model.terms, model.boundary, totals)
     return {field: getattr(arrays, field) for field in STATE} | {"memory": model.memory, "totals": totals}

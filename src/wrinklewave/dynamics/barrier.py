@@ -26,6 +26,9 @@ def _pointer(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
     return cgutils.get_item_pointer(context, builder, array_type, array, [arguments[1]])
 
 
+PATIENCE = 200
+"""Looks at a counter before a core is offered to others: about as long as it takes to offer it."""
+
 ABANDONED = 2**62
 """A count that no meeting reaches: who finds it does not wait."""
 
@@ -61,10 +64,19 @@ else:
 
 
 @serial
-def wait_for_all(counters, part, n_parts, round):
-    """Say that ``part`` has come to meeting number ``round`` (counted from 1), and wait until all have; its number."""
-    store(counters, part * LINE, round)
-    for other in range(n_parts):
-        while load(counters, other * LINE) < round:
+def wait_for(counts, part, count):
+    """Wait until ``part`` has counted so far."""
+    looks = 0
+    while load(counts, part * LINE) < count:
+        looks += 1
+        if looks > PATIENCE:
             offer_core()
+
+
+@serial
+def wait_for_all(counts, part, n_parts, round):
+    """Say that ``part`` has come to meeting number ``round`` (counted from 1), and wait until all have; its number."""
+    store(counts, part * LINE, round)
+    for other in range(n_parts):
+        wait_for(counts, other, round)
     return round

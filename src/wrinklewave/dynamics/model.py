@@ -188,9 +188,9 @@ def assemble(
         terms=terms,
         factors=np.ones((len(materials), n_terms, 5), number),
         shares=np.linspace(0, rows, parts + 1).astype(np.int64),
-        forces=np.zeros((parts, 3, 8, columns + 2), number),
+        forces=np.zeros((parts, 4, 8, columns + 2), number),
         nothing=np.zeros((8, columns + 2), number),
-        meetings=np.zeros(parts * LINE, dtype=np.int64),
+        counts=np.zeros((3, parts * LINE), dtype=np.int64),
     )
     memory = np.zeros((n_terms * components, rows, columns), number)
     return Model(mesh, materials, arrays, memory, (0.0,) * n_terms, boundary, density)

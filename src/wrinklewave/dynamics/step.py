@@ -1,7 +1,9 @@
 """One time step after another, on one or more threads, with identical results for any number of them.
 
-Threads take contiguous rows of elements. A thread moves the rows of nodes inside its share as it goes; the row between
-two shares needs the forces of both and is moved after all have finished, in the same order of additions. Each thread
+Threads take contiguous rows of elements, and the nodes from their first row on. A thread moves the rows of nodes
+inside its share as it goes. The row between two shares belongs to the upper one, which needs the forces of the lower
+one's last row of elements to move it; and the lower one needs it moved. Each has half a step to do so: the lower share
+computes that row of elements in the middle of its step, the upper one moves the row of nodes at the end. Each thread
 also does what the edges demand of its own nodes: a line of memory that another core has changed takes as long to come
 as a dozen elements.
 """
@@ -15,7 +17,7 @@ from numba import types
 from numba.extending import overload
 
 from wrinklewave._jit import INLINED, VECTOR_BYTES, in_single_precision, serial, strict, uintp, vector
-from wrinklewave.dynamics.barrier import ABANDONED, wait_for_all
+from wrinklewave.dynamics.barrier import ABANDONED, LINE, store, wait_for, wait_for_all
 from wrinklewave.dynamics.boundary import (
     FORCE,
     LEFT_STRAIGHT,
@@ -34,15 +36,20 @@ from wrinklewave.dynamics.rows import node_row, one_point_element
 from wrinklewave.dynamics.team import share_out
 from wrinklewave.materials.prony import step_factors
 
-FIRST = 0
+FIRST, BORDER = 2, 3
+"""Buffers of forces: of the first row of a share, and of the one next to another share; 0 and 1 take turns."""
+MET, MOVED, KNOWN = range(3)
+"""What each thread counts: meetings of all; steps after which its nodes are where they belong; steps in which the
+forces are known that the next share needs."""
 
 
 class Arrays(NamedTuple):
     """All that the stepping kernels read and write; see :mod:`wrinklewave.dynamics.rows` for shapes and units.
 
-    ``forces`` [n_parts, 3, 8, n_columns + 2] are the row buffers of each thread: its first row, and two in turn;
+    ``forces`` [n_parts, 4, 8, n_columns + 2] are the row buffers of each thread: two in turn, its first row and the one
+    next to another share;
     ``nothing`` [8, n_columns + 2] is zero: the forces of the row that is not there, below the mesh and above it;
-    ``meetings`` [n_parts * LINE] counts the meetings of each thread, see :mod:`wrinklewave.dynamics.barrier`.
+    ``counts`` [3, n_parts * LINE] tell the threads how far the others are, see :mod:`wrinklewave.dynamics.barrier`.
     """
 
     X: np.ndarray
@@ -56,13 +63,13 @@ class Arrays(NamedTuple):
         np.ndarray
     )  # neighbours in a row of one material: first column, the one after the last, layer, [n_runs, 3]
     first_run: np.ndarray  # of each row, and the number of all, [n_rows + 1]
-    moduli: np.ndarray  # [n_layers, 5], as one_point_row takes them
+    moduli: np.ndarray  # [n_layers, 5], as one_point_element takes them
     terms: np.ndarray  # [n_layers, n_terms, 3]: shear share, bulk share [Pa], relaxation time [s]
     factors: np.ndarray  # [n_layers, n_terms, 5]
     shares: np.ndarray  # first element row of each thread, and the number of rows, [n_parts + 1]
     forces: np.ndarray
     nothing: np.ndarray
-    meetings: np.ndarray
+    counts: np.ndarray
 
 
 @serial
@@ -162,9 +169,17 @@ def choose_move_row(j, start, stop, below, above, inverse_mass, dt_velocity, dt,
 
 
 @strict
-def _slot(j, first):
-    """Buffer of element row j in a share that begins at ``first``."""
-    return 0 if j == first else 1 + (j - first) % 2
+def _border(part, a):
+    """The last element row of a share, if another share follows it; else -1."""
+    return a.shares[part + 1] - 1 if part < a.shares.size - 2 else -1
+
+
+@strict
+def _slot(j, part, a):
+    """Buffer of element row j of a share."""
+    if j == a.shares[part]:
+        return FIRST
+    return BORDER if j == _border(part, a) else (j - a.shares[part]) % 2
 
 
 @strict
@@ -172,31 +187,53 @@ def _move_row(j, below, above, a, dt_velocity, dt):
     move_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
-@strict
-def _share(part, a, memory, terms, dt_velocity, dt):
-    first, last = a.shares[part], a.shares[part + 1]
-    forces = a.forces[part]
-    for j in range(first, last):
-        above = separate(forces[_slot(j, first)])
+@serial
+def _rows(part, start, stop, a, memory, terms, dt_velocity, dt):
+    """Forces of element rows ``start`` to ``stop`` of a share; the nodes below each move if both rows are known."""
+    first, border = a.shares[part], _border(part, a)
+    for j in range(start, stop):
+        forces = separate(a.forces[part, _slot(j, part, a)])
         for k in range(a.first_run[j], a.first_run[j + 1]):
-            start, stop, n = a.runs[k]
+            begin, end, n = a.runs[k]
             factors, moduli = a.factors[n], a.moduli[n]
-            element_row(j, start, stop, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, above)
-        if j > first:
-            below = forces[_slot(j - 1, first)]
-            _move_row(j, below, forces[_slot(j, first)], a, dt_velocity, dt)
+            element_row(j, begin, end, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, forces)
+        if j > first and j != border:
+            _move_between(j, part, a, dt_velocity, dt)
 
 
 @strict
-def _edge_rows_of_share(part, a, dt_velocity, dt):
+def _move_between(j, part, a, dt_velocity, dt):
+    """Move the row of nodes between element rows j - 1 and j of a share."""
+    below, above = a.forces[part, _slot(j - 1, part, a)], a.forces[part, _slot(j, part, a)]
+    _move_row(j, below, above, a, dt_velocity, dt)
+
+
+@strict
+def _share(part, step, a, memory, terms, dt_velocity, dt):
+    """Forces of all elements of a share in a step, and all its nodes but the first row moved."""
+    first, last, border = a.shares[part], a.shares[part + 1], _border(part, a)
+    middle = (first + last) // 2 if border >= 0 else last
+    _rows(part, first, middle, a, memory, terms, dt_velocity, dt)
+    if border >= 0:
+        wait_for(a.counts[MOVED], part + 1, step)
+        _rows(part, border, last, a, memory, terms, dt_velocity, dt)
+        store(a.counts[KNOWN], part * LINE, step + 1)
+        _rows(part, middle, border, a, memory, terms, dt_velocity, dt)
+        if border > first:
+            _move_between(border, part, a, dt_velocity, dt)
+
+
+@strict
+def _edge_rows_of_share(part, step, a, dt_velocity, dt):
     """Move the first row of nodes of a share, with the forces of the share below; and the last row of the mesh."""
     first, last = a.shares[part], a.shares[part + 1]
     below = a.nothing
     if part > 0:
-        below = a.forces[part - 1, _slot(first - 1, a.shares[part - 1])]
+        wait_for(a.counts[KNOWN], part - 1, step + 1)
+        below = a.forces[part - 1, _slot(first - 1, part - 1, a)]
     _move_row(first, below, a.forces[part, FIRST], a, dt_velocity, dt)
     if last == a.u.shape[0] - 1:
-        _move_row(last, a.forces[part, _slot(last - 1, first)], a.nothing, a, dt_velocity, dt)
+        _move_row(last, a.forces[part, _slot(last - 1, part, a)], a.nothing, a, dt_velocity, dt)
 
 
 @serial
@@ -209,20 +246,22 @@ def march(part, n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
     meeting = 0
     for n in range(n_steps):
         dt_velocity = 0.5 * ((dt_last if n == 0 else dt) + dt)
-        if n < 2 and part == 0:
-            update_factors(a.terms, dt_last if n == 0 else dt, dt, a.factors)
+        if n < 2:
+            meeting = wait_for_all(a.counts[MET], part, n_parts, meeting + 1)
+            if part == 0:
+                update_factors(a.terms, dt_last if n == 0 else dt, dt, a.factors)
+            meeting = wait_for_all(a.counts[MET], part, n_parts, meeting + 1)
         remember_rows(first, stop, nodes, boundary)
-        meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
-        _share(part, a, memory, terms, dt_velocity, dt)
-        meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
-        _edge_rows_of_share(part, a, dt_velocity, dt)
+        _share(part, n, a, memory, terms, dt_velocity, dt)
+        _edge_rows_of_share(part, n, a, dt_velocity, dt)
         hold_rows(first, stop, t + (n + 1) * dt, dt, nodes, boundary, totals)
         if boundary.left == LEFT_STRAIGHT:
-            meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
+            meeting = wait_for_all(a.counts[MET], part, n_parts, meeting + 1)
             rate = straight_rate(nodes)
-            meeting = wait_for_all(a.meetings, part, n_parts, meeting + 1)
+            meeting = wait_for_all(a.counts[MET], part, n_parts, meeting + 1)
             for j in range(first, stop):
                 keep_straight(j, rate, dt, nodes, boundary)
+        store(a.counts[MOVED], part * LINE, n + 1)
 
 
 def advance(
@@ -242,11 +281,11 @@ def advance(
     impulses at the boundary, see :mod:`wrinklewave.dynamics.boundary`.
     """
     by_node = np.zeros((n_edge_nodes(*a.u.shape), N_TOTALS))
-    a.meetings[:] = 0
+    a.counts[:] = 0
     try:
         share_out(march, a.shares.size - 1, n_steps, t, dt_last, dt, a, memory, terms, boundary, by_node)
     except BaseException:
-        a.meetings[:] = ABANDONED  # so that nobody waits for a share that will not come
+        a.counts[:] = ABANDONED  # so that nobody waits for a share that will not come
         raise
     totals[FORCE] = 0.0
     totals += by_node.sum(axis=0)
