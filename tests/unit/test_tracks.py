@@ -10,7 +10,7 @@ import pytest
 from wrinklewave.imaging.tracks import BRIDGED_FRAMES, Gap, smooth_in_time, track_wires
 from wrinklewave.imaging.wires import WireLook, WireSightings
 
-LOOK = WireLook(columns=np.array([100.0, 130.0, 300.0]), width=3.0, height=1.4, half=6)
+LOOK = WireLook(columns=np.array([100.0, 130.0, 300.0]), width=3.0, height=1.4, length=16.0)
 N_FRAMES = 40
 
 
@@ -21,7 +21,7 @@ def places(frame: int) -> np.ndarray:
 
 def sighting(columns: np.ndarray, lean: float = 0.0, distance: float = 8.0) -> WireSightings:
     n = columns.size
-    return WireSightings(columns, np.full(n, 0.02), np.full(n, lean), np.full(n, 0.005), distance)
+    return WireSightings(columns, np.full(n, 0.02), np.full(n, lean), np.full(n, 0.005), np.full(n, distance))
 
 
 def test_wires_keep_their_names_when_they_come_close_and_false_ones_are_ignored() -> None:

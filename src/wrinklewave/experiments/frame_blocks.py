@@ -23,7 +23,7 @@ MOST_FRAMES = 64
 MOST_BYTES = 64e6
 """Frames of a block: at most so many, and no more bytes of grey values (but at least four frames)."""
 
-_SIGHTING = ("column", "sigma", "lean", "lean_sigma")
+_SIGHTING = WireSightings._fields
 _LOCKING = ("count", "total", "squares")
 
 
@@ -35,8 +35,7 @@ class FrameBlock:
         frame: which frames these are, unreadable ones left out.
         rows, sigma, valid: the surface, [..., n_columns], as in ``Edge``.
         end: fields of ``StruckEnd``, [..., 16].
-        wires: column, sigma, lean and lean_sigma of what looks like a wire, [..., n_seen, 4], NaN after the last.
-        wire_distance: rows from there to the surface.
+        wires: fields of ``WireSightings``, [..., n_seen, 5], NaN after the last.
         locking: sums over the block's frames, [3, n_bins], as in ``PixelLocking``.
         contrast, noise: of each frame.
     """
@@ -47,7 +46,6 @@ class FrameBlock:
     valid: Flags
     end: Floats
     wires: Floats
-    wire_distance: Floats
     locking: Floats
     contrast: Floats
     noise: Floats
@@ -64,7 +62,6 @@ class FrameBlock:
             valid=np.array([edge.valid for edge in edges], dtype=bool).reshape(-1, n_columns),
             end=np.array([f.end for f in found], dtype=float).reshape(-1, len(StruckEnd._fields)),
             wires=_padded([f.wires for f in found]),
-            wire_distance=np.array([f.wires.distance for f in found]),
             locking=np.array([getattr(locking, name) for name in _LOCKING]),
             contrast=np.array([edge.contrast for edge in edges]),
             noise=np.array([edge.noise for edge in edges]),
@@ -73,9 +70,8 @@ class FrameBlock:
     @property
     def sightings(self) -> Iterator[WireSightings]:
         """Of the wires, frame by frame."""
-        for seen, distance in zip(self.wires, self.wire_distance, strict=True):
-            column, sigma, lean, lean_sigma = seen[np.isfinite(seen[:, 0])].T.copy()
-            yield WireSightings(column, sigma, lean, lean_sigma, float(distance))
+        for seen in self.wires:
+            yield WireSightings(*seen[np.isfinite(seen[:, 0])].T.copy())
 
     @property
     def pixel_locking(self) -> PixelLocking:

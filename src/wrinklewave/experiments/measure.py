@@ -203,7 +203,9 @@ def learn(experiment: Experiment, source: PreparedSource) -> tuple[Appearance, W
     mean = np.asarray(np.mean(undeformed, axis=0, dtype=np.float64), dtype=np.float32)
     given = experiment.wires.positions
     places = None if given is None else np.array([source.position(place)[0] for place in given])
-    return appearance, learn_wires(mean, appearance, count=experiment.wires.count, positions=places)
+    names = [f"[{column:g}, {row:g}]" for column, row in given or ()]
+    count = experiment.wires.count
+    return appearance, learn_wires(mean, appearance, count=count, positions=places, names=names)
 
 
 def measure_frames(

@@ -54,14 +54,14 @@ def track_wires(sightings: Sequence[WireSightings], look: WireLook) -> WireTrack
     """
     chosen = _joined(sightings, look.columns)
     shape = (len(sightings), look.columns.size)
-    column, sigma, lean, lean_sigma = (np.full(shape, np.nan) for _ in range(4))
-    distance = np.array([seen.distance for seen in sightings])[:, None]
+    column, sigma, lean, lean_sigma, distance = (np.full(shape, np.nan) for _ in range(5))
     for frame, places in enumerate(chosen):
         for wire, place in enumerate(places):
             if place >= 0:
                 seen = sightings[frame]
                 column[frame, wire], sigma[frame, wire] = seen.column[place], seen.sigma[place]
                 lean[frame, wire], lean_sigma[frame, wire] = seen.lean[place], seen.lean_sigma[place]
+                distance[frame, wire] = seen.distance[place]
     lean, lean_sigma = smooth_in_time(lean, lean_sigma)
     return _bridged(column + lean * distance, np.hypot(sigma, lean_sigma * distance))
 

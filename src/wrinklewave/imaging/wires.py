@@ -1,12 +1,14 @@
 """Probe wires that stand out of the surface: found in every frame, then joined to tracks of material points.
 
-In a band above the surface a wire is a bar darker (or brighter) than the background. Its place is found by maximum
-likelihood for a bar of known width, blurred and pixel-integrated, in two halves of the band, so that a wire that
-leans can be followed down to where it leaves the surface.
+Above the surface a wire is a bar darker (or brighter) than the background, which ends at its tip. All rows of it are
+used, each for as much of the wire as the blur leaves in it, in three parts one above the other, so that a wire that
+leans can be followed down to where it leaves the surface. Its place in each is found by maximum likelihood for a bar
+of known width, blurred and pixel-integrated.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -17,18 +19,22 @@ from wrinklewave.errors import InputError
 from wrinklewave.imaging.appearance import Appearance
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 from wrinklewave.imaging.bars import Bar, fit_bar
+from wrinklewave.imaging.edges.profile import normal_distribution
 from wrinklewave.imaging.strips import Greys, strip_shares
 
-_HALF = 6  # rows of each half of the band, at most
-_FEWEST_ROWS = 4  # of the band
-_TOP_CLEARANCE = 3.5  # blurs between the band and the tip of the wire: on a slope the tip is seen askew
+_BAND = 12  # rows in which wires are looked for, at most
+_LONGEST = 24.0  # px of a wire that are used: further up it need not be straight
+_FEWEST_ROWS = 3.0  # of a wire beside what the blur takes at the surface
+_PARTS = 3  # of a wire, one above the other
 _TIP = 0.5  # of its height: where a wire ends
 _LEAST_HEIGHT = 0.15  # contrasts: fainter bars are no wires
 _SEARCH = 10.0  # px around a given position
 _SMALLEST_SPACING = 5  # px between wires
 _WIDTHS = (0.5, 12.0)  # px
+_FIRST_WIDTH = 5.0  # px: to begin with
 _BESIDE = 6  # columns on either side that tell the background
 _FAINTEST = 0.5  # of the height known from the undeformed frames
+_CLEAR = 1.0  # blurs, and half a pixel: no closer to the surface is anything told of a wire
 
 
 @dataclass(frozen=True)
@@ -36,36 +42,41 @@ class WireLook:
     """What the wires of a recording have in common.
 
     Attributes:
-        columns: where they are in the undeformed frames [px], shape [n_wires], increasing.
+        columns: where they leave the surface in the undeformed frames [px], shape [n_wires], increasing.
         width: [px].
         height: in contrasts, positive if the wire is on the sample's side of grey.
-        half: rows of each half of the band in which they are looked for.
+        length: of the shortest above the surface [px].
     """
 
     columns: Floats
     width: float
     height: float
-    half: int
+    length: float
 
 
 class WireSightings(NamedTuple):
     """Wires seen in one frame, shape [n], from left to right, in pixels.
 
     Attributes:
-        column, sigma: middle of the wire in the middle of the band, and its standard uncertainty.
+        column, sigma: middle of the wire ``distance`` above the surface, and its standard uncertainty.
         lean, lean_sigma: columns per row, and its standard uncertainty.
-        distance: rows from the middle of the band down to the surface.
+        distance: rows from there down to the surface.
     """
 
     column: Floats
     sigma: Floats
     lean: Floats
     lean_sigma: Floats
-    distance: float
+    distance: Floats
 
 
 def learn_wires(
-    image: Pixels, appearance: Appearance, *, count: int | None = None, positions: Floats | None = None
+    image: Pixels,
+    appearance: Appearance,
+    *,
+    count: int | None = None,
+    positions: Floats | None = None,
+    names: Sequence[str] = (),
 ) -> WireLook:
     """Find the wires in the mean of the undeformed frames.
 
@@ -74,12 +85,13 @@ def learn_wires(
         appearance: of the recording.
         count: how many to find, or
         positions: columns where they are, to within a few pixels, shape [n_wires].
+        names: of the positions, for messages.
 
     Raises:
         InputError: if there are fewer than asked for.
     """
     rows = bridged(appearance.surface)
-    band = _band(image, rows, appearance, above=2 * _HALF, n_rows=2 * _HALF)
+    band = appearance.strip(image, rows - _gap(appearance.optics.blur) - _BAND, _BAND)
     smooth = np.abs(_smooth(band))
     peaks = _peaks(smooth, _LEAST_HEIGHT)
     if positions is None:
@@ -93,14 +105,22 @@ def learn_wires(
                 cure="lower it, or give wires.positions",
             )
     else:
-        chosen = np.array([_nearest(peaks, float(column)) for column in np.sort(positions)])
-    half = _half_band(image, rows, appearance, chosen)
-    band = _band(image, rows, appearance, above=2 * half, n_rows=2 * half)
+        order = np.argsort(positions)
+        chosen = np.array([_nearest(peaks, float(positions[i]), names[i] if names else "") for i in order])
+        _check_distinct(chosen, [names[i] if names else "" for i in order])
     blur = appearance.optics.blur
-    width = float(np.median([_width(band, column, blur) for column in chosen]))
-    bars = [_fit(band, column, width, blur) for column in chosen]
-    columns, heights = (np.array([getattr(bar, name) for bar in bars]) for name in ("position", "height"))
-    return WireLook(columns, width, float(np.median(heights)), half)
+    length = _length(image, rows, appearance, chosen)
+    parts = _parts(length, blur)
+    whole = [
+        _profile(image, rows, appearance.greys, column, length, _FIRST_WIDTH, parts[0], parts[-1], blur)
+        for column in chosen
+    ]
+    width = float(np.median([_width(one, column, blur) for one, column in zip(whole, chosen, strict=True)]))
+    heights = [_fit(one, column, width, blur).height for one, column in zip(whole, chosen, strict=True)]
+    look = WireLook(chosen, width, float(np.median(heights)), length)
+    seen = _seen(image, rows, appearance, look, chosen)
+    feet = seen[:, 0] + seen[:, 2] * seen[:, 4]
+    return WireLook(np.where(np.isfinite(feet), feet, chosen), width, look.height, length)
 
 
 def find_wires(image: Pixels, rows: Floats, appearance: Appearance, look: WireLook) -> WireSightings:
@@ -112,53 +132,143 @@ def find_wires(image: Pixels, rows: Floats, appearance: Appearance, look: WireLo
         appearance, look: of the recording.
     """
     blur = appearance.optics.blur
-    found = _find(
-        image,
-        rows - _gap(blur),
-        look.half,
-        appearance.greys,
-        np.sign(look.height),
-        _FAINTEST * _seen_height(look, blur),
-        look.width,
-        blur,
-    )
-    column, variance, lean, lean_variance = found[np.isfinite(found).all(axis=1)].T.copy()
-    sigma = 1.0 / appearance.contrast_to_noise / np.sqrt(look.half)
-    return WireSightings(
-        column,
-        sigma * np.sqrt(variance),
-        lean,
-        sigma * np.sqrt(lean_variance),
-        distance=look.half + _gap(blur) - 0.5,
-    )
+    n_rows = int(min(_BAND, max(look.length - _gap(blur), _FEWEST_ROWS)))
+    band = strip_shares(image, rows - _gap(blur) - n_rows, n_rows, appearance.greys)
+    peaks = _peaks(np.sign(look.height) * _smooth(band), _FAINTEST * _seen_height(look, blur))
+    found = _seen(image, rows, appearance, look, peaks)
+    column, variance, lean, lean_variance, distance = found[np.isfinite(found).all(axis=1)].T.copy()
+    noise = 1.0 / appearance.contrast_to_noise
+    return WireSightings(column, noise * np.sqrt(variance), lean, noise * np.sqrt(lean_variance), distance)
+
+
+def _seen(image: Pixels, rows: Floats, appearance: Appearance, look: WireLook, near: Floats) -> Floats:
+    """Column, its variance, lean, its variance, and the distance above the surface, of wires ``near`` columns."""
+    blur = appearance.optics.blur
+    parts = _parts(look.length, blur)
+    return _in_parts(image, rows, appearance.greys, near, look.length, look.width, parts, blur)
 
 
 @allocating
-def _find(
+def _in_parts(
     image: Pixels,
-    foot: Floats,
-    half: int,
+    rows: Floats,
     greys: Greys,
-    sign: float,
-    least: float,
+    near: Floats,
+    length: float,
     width: float,
+    parts: Floats,
     blur: float,
 ) -> Floats:
-    """Column, lean and the variances of both for noise of variance 1 in a half of the band, shape [n, 4].
-
-    Args:
-        foot: row above which the band begins, shape [n_columns].
-    """
-    far = strip_shares(image, foot - 2 * half, half, greys)
-    near = strip_shares(image, foot - half, half, greys)
-    peaks = _peaks(sign * _smooth(0.5 * (far + near)), least)
-    found = np.empty((peaks.size, 4))
-    for i in range(peaks.size):
-        high, low = _fit(far, peaks[i], width, blur), _fit(near, peaks[i], width, blur)
-        variance = high.variance + low.variance
-        found[i, 0], found[i, 1] = 0.5 * (high.position + low.position), 0.25 * variance
-        found[i, 2], found[i, 3] = (low.position - high.position) / half, variance / half**2
+    """Fields of ``WireSightings`` for noise of variance 1, shape [n, 5]."""
+    found = np.full((near.size, 5), np.nan)
+    n = parts.size - 1
+    place, variance, distance = np.empty(n), np.empty(n), np.empty(n)
+    for i in range(near.size):
+        for k in range(n):
+            part = _profile(image, rows, greys, near[i], length, width, parts[k], parts[k + 1], blur)
+            fit = fit_bar(part.shares, part.weights, part.first, near[i], width, blur)
+            place[k], variance[k], distance[k] = fit.position, fit.variance, part.distance
+        weight = 1.0 / variance
+        total = weight.sum()
+        middle = np.dot(weight, distance) / total
+        lever = np.dot(weight, (distance - middle) ** 2)
+        if not (np.isfinite(place).all() and lever > 0.0):
+            continue
+        found[i, 0], found[i, 1] = np.dot(weight, place) / total, 1.0 / total
+        found[i, 2], found[i, 3] = -np.dot(weight * (distance - middle), place) / lever, 1.0 / lever
+        found[i, 4] = middle
     return found
+
+
+class _Profile(NamedTuple):
+    """Some rows around a wire brought together: shares of consecutive columns, and how well each is known.
+
+    ``weights`` are inverse variances for noise of variance 1, ``distance`` is from the surface to the rows' middle.
+    """
+
+    first: int
+    shares: Floats
+    weights: Floats
+    distance: float
+
+
+@allocating
+def _profile(
+    image: Pixels,
+    rows: Floats,
+    greys: Greys,
+    column: float,
+    length: float,
+    width: float,
+    low: float,
+    high: float,
+    blur: float,
+) -> _Profile:
+    """The rows from ``low`` to ``high`` above the surface around a wire, less the blurred surface itself.
+
+    Rows count for as much of the wire as they show: the blur takes some of it at the surface and at the tip.
+    """
+    reach = int(0.5 * width + 3.0 * blur + 1.0) + _BESIDE
+    middle = int(np.rint(column))
+    first, stop = max(middle - reach, 0), min(middle + reach + 1, image.shape[1])
+    shares, weights = np.zeros(stop - first), np.zeros(stop - first)
+    total, lever = 0.0, 0.0
+    own = (
+        width**2 / 12.0
+    )  # variance of the wire's columns; a column c sees those at x + share (c - x), on average
+    share = own / (own + blur**2 + 1.0 / 12.0)
+    tilt = _slope(rows, middle)
+    along = np.sqrt(blur**2 + tilt**2 * share * blur**2)
+    for c in range(first, stop):
+        foot = rows[min(max(middle, 0), rows.size - 1)] + share * tilt * (c - column)
+        if not np.isfinite(rows[c]) or not np.isfinite(foot):
+            continue
+        slope = _slope(rows, c)
+        across = np.sqrt(blur**2 * (1.0 + slope**2) + slope**2 / 12.0)
+        lowest = min(foot - low, rows[c] - clearance_of_wires(across))
+        for r in range(max(int(np.ceil(foot - high)), 0), min(int(np.ceil(lowest)), image.shape[0])):
+            d = foot - r
+            shown = _edge(d, along) - _edge(d - length, along)
+            depth = r - greys.row - greys.slope * c
+            background = greys.background[c] + greys.background_gradient[c] * depth
+            contrast = greys.sample[c] + greys.sample_gradient[c] * depth - background
+            shares[c - first] += shown * ((image[r, c] - background) / contrast - _edge(r - rows[c], across))
+            weights[c - first] += shown * shown
+            if abs(c - middle) <= 0.5 * width + 1.0:
+                total += shown * shown
+                lever += shown * shown * d
+    for i in range(shares.size):
+        if weights[i] > 0.0:
+            shares[i] /= weights[i]
+    return _Profile(first, shares, weights, lever / total if total > 0.0 else np.nan)
+
+
+@allocating
+def _slope(rows: Floats, c: int) -> float:
+    """Of the surface at a column; 0 where it is not known on both sides."""
+    slope = 0.5 * (rows[min(max(c + 1, 0), rows.size - 1)] - rows[min(max(c - 1, 0), rows.size - 1)])
+    return slope if np.isfinite(slope) else 0.0
+
+
+@allocating
+def _edge(u: float, blur: float) -> float:
+    """A blurred, pixel-integrated unit step at the distance ``u``."""
+    return blur * (normal_distribution((u + 0.5) / blur)[1] - normal_distribution((u - 0.5) / blur)[1])
+
+
+@allocating
+def clearance_of_wires(blur: float) -> float:
+    """Distance from the surface beyond which the blurred surface itself no longer matters beside a wire [px]."""
+    return _CLEAR * blur + 0.5
+
+
+def _parts(length: float, blur: float) -> Floats:
+    """Distances from the surface that divide a wire into parts that tell as much as each other."""
+    low, high = clearance_of_wires(blur), min(length + 2.0 * blur, _LONGEST)
+    d = np.linspace(low, high, 257)
+    told = np.cumsum([(_edge(u, blur) - _edge(u - length, blur)) ** 2 for u in d])
+    inner = np.interp(np.arange(1, _PARTS) * told[-1] / _PARTS, told, d)
+    return np.concatenate([[low], inner, [high]])
 
 
 def hidden_by_wires(sightings: WireSightings, look: WireLook, n_columns: int) -> Flags:
@@ -172,7 +282,7 @@ def hidden_by_wires(sightings: WireSightings, look: WireLook, n_columns: int) ->
     return hidden
 
 
-NO_WIRES = WireSightings(np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0), 0.0)
+NO_WIRES = WireSightings(*np.zeros((5, 0)))
 """What is seen where no wires are looked for."""
 
 
@@ -189,30 +299,26 @@ def _gap(blur: float) -> float:
     return 1.5 * blur + 1.0
 
 
-def _band(image: Pixels, rows: Floats, appearance: Appearance, *, above: int, n_rows: int) -> Floats:
-    """Means of ``n_rows`` rows, the first of them ``above`` rows over the gap above the surface, as shares."""
-    return appearance.strip(image, rows - _gap(appearance.optics.blur) - above, n_rows)
-
-
-def _half_band(image: Pixels, rows: Floats, appearance: Appearance, columns: Floats) -> int:
-    """Rows of each half of a band that the shortest of the wires at ``columns`` stands well out of."""
-    highest = int(np.nanmin(rows) - _gap(appearance.optics.blur))
+def _length(image: Pixels, rows: Floats, appearance: Appearance, columns: Floats) -> float:
+    """How far the shortest of the wires at ``columns`` stands out of the surface, as far as that is used [px]."""
+    blur = appearance.optics.blur
+    highest = int(min(np.nanmin(rows), _LONGEST + 2.0 * blur))
+    start = int(np.ceil(_gap(blur)))
     places = np.rint(columns).astype(int)
-    profile = np.array(
-        [_band(image, rows, appearance, above=above, n_rows=1)[places] for above in range(1, highest)]
-    )
-    foot = np.median(profile[:_FEWEST_ROWS], axis=0)
-    beyond = profile / foot < _TIP
-    length = np.where(beyond.any(axis=0), beyond.argmax(axis=0), highest).min()
-    n_rows = int(length - _TOP_CLEARANCE * appearance.optics.blur)
-    if n_rows < _FEWEST_ROWS:
+    profile = np.array([appearance.strip(image, rows - above, 1)[places] for above in range(start, highest)])
+    if not profile.size:
+        profile = np.ones((1, columns.size))
+    beyond = profile / np.median(profile[:3], axis=0) < _TIP
+    length = start - 0.5 + float(np.where(beyond.any(axis=0), beyond.argmax(axis=0), profile.shape[0]).min())
+    needed = _gap(blur) + _FEWEST_ROWS
+    if length < needed:
         raise InputError(
-            f"the shortest wire stands {length + _gap(appearance.optics.blur):.0f} px out of the surface",
+            f"the shortest wire stands {length:.0f} px out of the surface",
             key="wires",
-            expected=f"{_FEWEST_ROWS + 5 * appearance.optics.blur + 1:.0f} px at least",
-            cure="leave this wire out, or check calibration.y_axis and region.rows",
+            expected=f"{needed:.0f} px at least",
+            cure="leave this wire out, or check calibration.y_axis and region",
         )
-    return min(n_rows // 2, _HALF)
+    return length
 
 
 @allocating
@@ -239,11 +345,11 @@ def _peaks(values: Floats, least: float) -> Floats:
     return np.flatnonzero(found).astype(np.float64)
 
 
-def _nearest(peaks: Floats, column: float) -> float:
+def _nearest(peaks: Floats, column: float, name: str) -> float:
     near = peaks[np.abs(peaks - column) <= _SEARCH]
     if near.size == 0:
         raise InputError(
-            f"no wire is seen within {_SEARCH:.0f} px of column {column:.0f} of the turned frame",
+            f"no wire is seen within {_SEARCH:.0f} px of {name or f'column {column:.0f}'}",
             key="wires.positions",
             expected="[column, row] where each wire leaves the undeformed surface",
             cure="correct it, or give wires.count",
@@ -251,25 +357,28 @@ def _nearest(peaks: Floats, column: float) -> float:
     return float(near[np.argmin(np.abs(near - column))])
 
 
-@allocating
-def _fit(band: Floats, column: float, width: float, blur: float) -> Bar:
+def _check_distinct(chosen: Floats, names: Sequence[str]) -> None:
+    same = np.flatnonzero(np.diff(chosen) == 0.0)
+    if same.size:
+        raise InputError(
+            f"{names[same[0]]} and {names[same[0] + 1]} are the same wire",
+            key="wires.positions",
+            expected="one position for each wire",
+            cure="correct or remove one of them",
+        )
+
+
+def _fit(profile: _Profile, column: float, width: float, blur: float) -> Bar:
     """A bar near ``column`` on the background beside it."""
-    reach = 0.5 * width + 3.0 * blur + 1.0
-    first, stop = max(int(column - reach), 0), min(int(column + reach) + 2, band.size)
-    total, n = 0.0, 0
-    for c in range(max(first - _BESIDE, 0), min(stop + _BESIDE, band.size)):
-        if not first <= c < stop and np.isfinite(band[c]):
-            total += band[c]
-            n += 1
-    return fit_bar(band[first:stop] - total / max(n, 1), first, column, width, blur)
+    return fit_bar(profile.shares, profile.weights, profile.first, column, width, blur)
 
 
-def _width(band: Floats, column: float, blur: float) -> float:
-    """Width of a bar that explains the band best."""
+def _width(profile: _Profile, column: float, blur: float) -> float:
+    """Width of a bar that explains the profile best."""
     from scipy.optimize import minimize_scalar
 
     found = minimize_scalar(
-        lambda width: _fit(band, column, width, blur).misfit,
+        lambda width: _fit(profile, column, width, blur).misfit,
         bounds=_WIDTHS,
         method="bounded",
         options={"xatol": 1e-2},
