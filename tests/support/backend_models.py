@@ -168,7 +168,7 @@ def run_together(simulations: Sequence[Simulation]) -> list[dict[str, Array] | R
     from wrinklewave.dynamics.cuda.backend import Batch
 
     batch = Batch([simulation.model for simulation in simulations])
-    for simulation, member in zip(simulations, batch.members, strict=True):
+    for simulation, member in zip(simulations, batch.members(), strict=True):
         simulation.backend = member
     found = dict(answered_together([to_the_end(simulation) for simulation in simulations], batch.march))
     return [found[place] for place in range(len(simulations))]

@@ -94,7 +94,7 @@ def compiled(model: Model) -> dict[str, Resources]:
         current_context=lambda: None,
     )
     dispatcher.get_current_device = lambda: SimpleNamespace(compute_capability=CAPABILITY)
-    (member,) = backend.Batch([model]).members
+    (member,) = backend.Batch([model]).members()
     member.march(March(3, 0.0, 0.0, 1e-6))
     member.snapshot()()
     return found

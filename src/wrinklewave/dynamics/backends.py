@@ -90,7 +90,7 @@ def backend_for(device: Device, model: Model) -> Backend:
     if device == "cuda":
         from wrinklewave.dynamics.cuda.backend import Batch
 
-        return Batch([model]).members[0]
+        return Batch([model]).members()[0]
     from wrinklewave.dynamics.cpu import Cpu
 
     return Cpu(model)

@@ -33,7 +33,7 @@ def simulate_together(
 
     started = [start(case, folder, device="cuda", resume=True) for case, folder in runs]
     batch = Batch([one.simulation.model for one in started])
-    for one, member in zip(started, batch.members, strict=True):
+    for one, member in zip(started, batch.members(), strict=True):
         one.simulation.backend = member
     with interruptible() as wished:
         running = [one.to_the_end(lambda: nullcontext(wished), progress) for one in started]

@@ -83,16 +83,21 @@ def shape_of(model: Model) -> tuple[Any, ...]:
     return a.X.shape, a.u.dtype, model.memory.shape, a.terms.shape, boundary.old.shape, boundary.bins.shape
 
 
-def most_members(model: Model, batches: int) -> int:
-    """How many models of one shape each of some batches can have, as far as the device's memory goes."""
+def memory_of(model: Model) -> int:
+    """About how many bytes a member of a batch takes on the device."""
     a, outputs = model.arrays, 4 * model.mesh.X.size + len(FIELDS) * model.mesh.n_elements
     state = (len(NODAL) + FORCES) * a.u.nbytes + model.memory.nbytes + 8 * model.mesh.n_elements
+    return state + 8 * OUTPUTS * outputs
+
+
+def most_members(model: Model, batches: int) -> int:
+    """How many models of one shape each of some batches can have, as far as the device's memory goes."""
     free = USED_MEMORY * cuda.current_context().get_memory_info().free / batches
-    return max(1, int(min(MOST_MEMBERS, free / (state + 8 * OUTPUTS * outputs))))
+    return max(1, int(min(MOST_MEMBERS, free / memory_of(model))))
 
 
 class Batch:
-    """Models of one shape on the current CUDA device, whatever their numbers; :attr:`members` step them.
+    """Models of one shape on the current CUDA device, whatever their numbers; :meth:`members` step them.
 
     Members that march together do so in one launch, each with its own step and number of steps; none depends on which
     others do.
@@ -112,11 +117,15 @@ class Batch:
         if len(set(map(shape_of, models))) > 1:
             raise ValueError("models of more than one shape")
         self._models = list(models)
-        self.members = [Cuda(self, place, model) for place, model in enumerate(models)]
         self.threads = SIMULATED_THREADS if config.ENABLE_CUDASIM else kernels.BLOCK
         self.slots: list[_Slot] = []  # that no snapshot holds
         self._shared = 8 * self.threads  # bytes: one number for each
         self._grid: tuple[int, int] | None = None  # of the steps; not known before the first
+        self._least: dict[int, float] = {}  # stable step of members' present states, as far as it is known
+
+    def members(self) -> list[Cuda]:
+        """A backend for each model."""
+        return [Cuda(self, place, model) for place, model in enumerate(self._models)]
 
     def march(self, wanted: Mapping[int, March]) -> dict[int, Sample]:
         """Step the members in the places that want it: steps, samples and stable steps in a row, one wait for all."""
@@ -133,8 +142,7 @@ class Batch:
         self._step(n, members, times, first_factors)
         sums, edges, least = self._survey(members, times)
         seconds = (time.perf_counter() - begin) / n.sum()
-        for place, smallest in zip(places, least, strict=True):
-            self.members[place].known_step = float(smallest)
+        self._least |= {place: float(smallest) for place, smallest in zip(places, least, strict=True)}
         return {
             place: Sample(
                 seconds=seconds * march.n,
@@ -150,7 +158,7 @@ class Batch:
         """Prony coefficients of all members but the first step's go to where the kernels look for them."""
         first_factors = self._factors.copy()
         for place, march in wanted.items():
-            own, arrays = self.members[place].layers, self._models[place].arrays
+            own, arrays = self.layers(place), self._models[place].arrays
             terms, factors = arrays.terms, arrays.factors
             update_factors(terms, march.last_dt, march.dt, factors)
             first_factors[own] = factors
@@ -185,10 +193,25 @@ class Batch:
         launch = kernels.stable_steps[blocks, self.threads, self.stream, self._shared]
         launch(len(self._models), members, d.arrays, d.layer, d.density, b.steps, b.least[:count])
 
-    def stable_steps(self, member: Cuda) -> NDArray[np.float64]:
+    def stable_steps(self, place: int) -> NDArray[np.float64]:
         """Largest stable step of each element of a member [s], shape [n_rows, n_columns]."""
-        self._estimate_steps(cuda.to_device(np.array([member.place]), stream=self.stream))
-        return self._buffers.steps[member.rows].copy_to_host(stream=self.stream)
+        self._estimate_steps(cuda.to_device(np.array([place]), stream=self.stream))
+        return self._buffers.steps[self.rows(place)].copy_to_host(stream=self.stream)
+
+    def least_stable_step(self, place: int) -> float:
+        """The smallest of them [s]; the last march has brought it with it."""
+        if place not in self._least:
+            self._least[place] = float(self.stable_steps(place).min())
+        return self._least[place]
+
+    def rows(self, place: int) -> slice:
+        """Rows of elements of a member in the tall mesh."""
+        return slice(place * self._height, (place + 1) * self._height - 1)
+
+    def layers(self, place: int) -> slice:
+        """Layers of a member among those of all."""
+        count = len(self._models[place].density)
+        return slice(place * count, (place + 1) * count)
 
     @cached_property
     def resident(self) -> _Resident:
@@ -299,38 +322,23 @@ class Cuda:
     """
 
     def __init__(self, batch: Batch, place: int, model: Model) -> None:
-        self._batch, self.place, self.model = batch, place, model
-        self.known_step: float | None = None  # of the present state
-
-    @property
-    def rows(self) -> slice:
-        """Its rows of elements in the tall mesh."""
-        height = self.model.mesh.X.shape[0]
-        return slice(self.place * height, (self.place + 1) * height - 1)
-
-    @property
-    def layers(self) -> slice:
-        """Its layers among those of all members."""
-        count = len(self.model.density)
-        return slice(self.place * count, (self.place + 1) * count)
+        self._batch, self._place, self._model = batch, place, model
 
     def march(self, wanted: March) -> Sample:
         """March alone."""
-        return self._batch.march({self.place: wanted})[self.place]
+        return self._batch.march({self._place: wanted})[self._place]
 
     def least_stable_step(self) -> float:
-        """The smallest of them [s]; a march has brought it with it."""
-        if self.known_step is None:
-            self.known_step = float(self.stable_steps().min())
-        return self.known_step
+        """The smallest of them [s]."""
+        return self._batch.least_stable_step(self._place)
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
-        return self._batch.stable_steps(self)
+        return self._batch.stable_steps(self._place)
 
     def snapshot(self) -> Callable[[], Snapshot]:
         """Compute the fields on the device; they are copied from it while the next steps are taken."""
-        batch, model = self._batch, self.model
+        batch, model = self._batch, self._model
         slot = batch.slots.pop() if batch.slots else _Slot.of(model)
         blocks = -(-model.mesh.X.size // batch.threads)
         launch = kernels.snapshot[blocks, batch.threads, batch.stream]
@@ -354,7 +362,7 @@ class Cuda:
 
     def fetch_all(self) -> None:
         """Copy displacements, velocities and memory to the model."""
-        own, model, stream = self._own, self.model, self._batch.stream
+        own, model, stream = self._own, self._model, self._batch.stream
         for name in ("u", "w", "vx", "vy"):
             getattr(own.arrays, name).copy_to_host(getattr(model.arrays, name), stream=stream)
         for component, kept in zip(own.memory, model.memory, strict=True):
@@ -364,10 +372,11 @@ class Cuda:
     @cached_property
     def _own(self) -> _Resident:
         """Its part of what stays on the device."""
-        d, elements = self._batch.resident, self.rows
+        d, elements = self._batch.resident, self._batch.rows(self._place)
         nodes = slice(elements.start, elements.stop + 1)
         arrays = {name: getattr(d.arrays, name)[nodes] for name in NODAL}
-        arrays |= {name: getattr(d.arrays, name)[self.layers] for name in BY_LAYER}
+        layers = self._batch.layers(self._place)
+        arrays |= {name: getattr(d.arrays, name)[layers] for name in BY_LAYER}
         return d._replace(
             arrays=d.arrays._replace(**arrays),
             layer=d.layer[elements],
