@@ -13,15 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from wrinklewave._jit import allocating
+from wrinklewave._jit import allocating, uintp, vector
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 
 _BAND = 20  # pixels along the column
 _FEWEST = 3  # pixels of a band that say anything
 _CLEARANCE = 3.5  # blurs between the edge and the band
-_HALF_WINDOW = 32  # two running sums over 2 _HALF_WINDOW + 1 columns make the triangular window
-_GRADIENT_HALF_WINDOW = 96  # the same for the gradient
+_BIN = 4  # columns that share a line
+_WIDTH = 16  # bins: half the base of the triangular window
+_GRADIENT_WIDTH = 48  # the same for the gradient
 _GRADIENT_PRIOR = 0.01  # its standard deviation beforehand, in contrasts per pixel
+_LANES = 8  # numbers smoothed side by side
+_BLOCK = 64  # columns whose pixels are summed together
 _OUTLIER = 6.0  # standard deviations of a band's mean from the line, beyond a tenth of the contrast
 _LEAST_NOISE = 0.29  # grey values: rounding to integers
 _SPOILT = 2.2  # blurs between a column that something stands before and the nearest that may be trusted
@@ -155,8 +158,8 @@ def _side(
     unlike = np.zeros(usable.size, np.bool_)
     for c in range(usable.size):
         n = max(band[_N, c], 1.0)
-        away = band[_GREY, c] / n - value[c] - gradient[c] * band[_D, c] / n
-        unlike[c] = usable[c] and not abs(away) <= _OUTLIER * noise / np.sqrt(n) + 0.1 * contrast
+        away = band[_GREY, c] - n * value[c] - gradient[c] * band[_D, c]
+        unlike[c] = usable[c] and not abs(away) <= _OUTLIER * noise * np.sqrt(n) + 0.1 * contrast * n
     if unlike.any():
         alike = usable & ~with_neighbours(unlike, blur)
         _find_gradient(band, alike, ridge, gradient)
@@ -183,85 +186,155 @@ def _median(values: Floats, taken: Flags) -> float:
 @allocating
 def _find_gradient(band: Floats, taken: Flags, ridge: float, gradient: Floats) -> None:
     """Gradient down the columns, from what varies within each column, in the wide window."""
-    sums = np.zeros((2, taken.size))
+    sums = _zero_bins(taken.size, _GRADIENT_WIDTH)  # of d^2 and of grey value times d
     for c in range(taken.size):
         if taken[c]:
-            n = max(band[_N, c], 1.0)
-            sums[0, c] = band[_DD, c] - band[_D, c] ** 2 / n
-            sums[1, c] = band[_GREY_D, c] - band[_D, c] * band[_GREY, c] / n
-    window = (2.0 * _GRADIENT_HALF_WINDOW + 1.0) ** 2 / (2.0 * _HALF_WINDOW + 1.0)
-    _window(sums, _GRADIENT_HALF_WINDOW)
+            r, share = 2 * _GRADIENT_WIDTH + c // _BIN, band[_D, c] / max(band[_N, c], 1.0)
+            sums[r, 0] += band[_DD, c] - share * band[_D, c]
+            sums[r, 1] += band[_GREY_D, c] - share * band[_GREY, c]
+    _smooth(sums, _GRADIENT_WIDTH, np.zeros(_LANES), np.zeros(_LANES))
+    prior = ridge * _GRADIENT_WIDTH**2 / _WIDTH
     for c in range(taken.size):
-        gradient[c] = sums[1, c] / (sums[0, c] + ridge * window)
+        r = _GRADIENT_WIDTH - 1 + c // _BIN
+        gradient[c] = sums[r, 1] / (sums[r, 0] + prior)
 
 
 @allocating
 def _find_value(band: Floats, taken: Flags, gradient: Floats, value: Floats) -> None:
-    """Value at the edge: a straight line, weighted, about every column."""
-    sums = np.zeros((5, taken.size))  # n, n x, n x^2, and grey value and grey value x
+    """Value at the edge: a straight line, weighted, about every bin."""
+    sums = _zero_bins(taken.size, _WIDTH)  # n, n x, n x^2, grey value and grey value times x
     for c in range(taken.size):
         if taken[c]:
-            n = band[_N, c]
-            total = band[_GREY, c] - gradient[c] * band[_D, c]
-            sums[0, c], sums[1, c], sums[2, c] = n, n * c, n * c * c
-            sums[3, c], sums[4, c] = total, total * c
-    _window(sums, _HALF_WINDOW)
-    for c in range(taken.size):
-        w = sums[0, c]
-        if w <= 0.5:
-            value[c] = np.nan
-            continue
-        centre, mean = sums[1, c] / w, sums[3, c] / w
-        line = (sums[4, c] / w - centre * mean) / (sums[2, c] / w - centre**2 + 1.0)
+            r, n, total = 2 * _WIDTH + c // _BIN, band[_N, c], band[_GREY, c] - gradient[c] * band[_D, c]
+            sums[r, 0] += n
+            sums[r, 1] += n * c
+            sums[r, 2] += n * c * c
+            sums[r, 3] += total
+            sums[r, 4] += total * c
+    _smooth(sums, _WIDTH, np.zeros(_LANES), np.zeros(_LANES))
+    _put_lines(sums, value)
+
+
+@allocating
+def _put_lines(sums: Floats, value: Floats) -> None:
+    """The line of each column's bin at the column."""
+    centre, mean, line = 0.0, np.nan, 0.0
+    for c in range(value.size):
+        if c % _BIN == 0:
+            r = _WIDTH - 1 + c // _BIN
+            centre, mean, line = 0.0, np.nan, 0.0
+            if sums[r, 0] > 0.5:
+                centre, mean = sums[r, 1] / sums[r, 0], sums[r, 3] / sums[r, 0]
+                spread = sums[r, 2] / sums[r, 0] - centre * centre + 1.0
+                line = (sums[r, 4] / sums[r, 0] - centre * mean) / spread
         value[c] = mean + line * (c - centre)
 
 
 @allocating
-def _window(sums: Floats, half: int) -> None:
-    """Sum along each row in a window of triangular weight (two running sums), shorter at the ends, in place."""
-    n_rows, n = sums.shape
-    total = np.empty(n)
-    for i in range(2 * n_rows):
-        row = sums[i // 2]
-        acc = 0.0
-        for c in range(min(half, n)):
-            acc += row[c]
-        for c in range(n):
-            if c + half < n:
-                acc += row[c + half]
-            if c > half:
-                acc -= row[c - half - 1]
-            total[c] = acc
-        row[:] = total
+def _zero_bins(n_columns: int, width: int) -> Floats:
+    """For sums over bins of columns, and what ``_smooth`` needs beside."""
+    return np.zeros(((n_columns - 1) // _BIN + 1 + 3 * width, _LANES))
+
+
+@vector
+def _smooth(sums: Floats, width: int, rise: Floats, level: Floats) -> None:
+    """Sums in a window of triangular weight, ``width`` at its middle, in place.
+
+    The second difference of the triangle is 1 at -width, -2 at 0, 1 at +width. Row r moves to row r - width - 1, so 2
+    width rows before those that count and width after them are zeros; so are ``rise`` and ``level``, shape [_LANES].
+    """
+    w = uintp(width)
+    for i in range(uintp(sums.shape[0]) - w - w):
+        for q in range(uintp(_LANES)):
+            rise[q] += sums[i + w + w, q] - 2.0 * sums[i + w, q] + sums[i, q]
+            level[q] += rise[q]
+            sums[i, q] = level[q]
 
 
 @allocating
 def _band_sums(image: Pixels, rows: Floats, blur: Floats, begin: int, stop: int) -> Floats:
     """Sums over the bands above and below, shape [2, 6, n_columns]."""
     n_rows, n_columns = image.shape
-    sums = np.zeros((2, 6, n_columns))
     begin, stop = max(begin, 0), min(stop, n_columns)
-    for c in range(begin, stop):
-        away = _CLEARANCE * blur[c] + 1.0
-        neighbour = c + 1 if c + 1 < stop else c - 1
-        for side in range(2):
-            if side == 1:
-                first = max(int(np.ceil(rows[c] + away)), 0)
-                last = min(first + _BAND - 1, n_rows - 1)
-            else:
-                last = min(int(np.floor(rows[c] - away)), n_rows - 1)
-                first = max(last - _BAND + 1, 0)
-            n, sd, sdd, si, sid, sv = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-            for r in range(first, last + 1):
-                d = r - rows[c]
-                grey = image[r, c]
-                step = image[r, neighbour] - grey
-                n += 1.0
-                sd += d
-                sdd += d * d
-                si += grey
-                sid += grey * d
-                sv += 0.5 * step * step
-            sums[side, _N, c], sums[side, _D, c], sums[side, _DD, c] = n, sd, sdd
-            sums[side, _GREY, c], sums[side, _GREY_D, c], sums[side, _VARIANCE, c] = si, sid, sv
+    sums = np.zeros((2, 6, n_columns))
+    for side in range(2):
+        top, bottom = np.zeros(n_columns, np.float32), np.full(n_columns, np.float32(-1.0))
+        _bounds(rows, blur, side, n_rows, begin, stop, top, bottom)
+        grey = np.zeros(n_columns, np.float32)
+        grey_depth, variance = grey.copy(), grey.copy()
+        for left in range(begin, stop, _BLOCK):
+            right = min(left + _BLOCK, stop)
+            first, last = int(top[left:right].min()), int(bottom[left:right].max())
+            inner = min(right, n_columns - 1)
+            _add_pixels(image, top, bottom, left, inner, 1, first, last + 1, grey, grey_depth, variance)
+            _add_pixels(image, top, bottom, inner, right, -1, first, last + 1, grey, grey_depth, variance)
+        _moments(top, bottom, rows, grey, grey_depth, variance, sums[side])
     return sums
+
+
+@vector
+def _bounds(
+    rows: Floats, blur: Floats, side: int, n_rows: int, begin: int, stop: int, top: Pixels, bottom: Pixels
+) -> None:
+    """First and last row of a band, the latter before the first where nothing of it is in the image."""
+    last = float(n_rows - 1)
+    for c in range(uintp(begin), uintp(stop)):
+        away = _CLEARANCE * blur[c] + 1.0
+        nearest = np.ceil(rows[c] + away) if side == 1 else np.floor(rows[c] - away)
+        other = nearest + (_BAND - 1.0) if side == 1 else nearest - (_BAND - 1.0)
+        top[c] = max(min(nearest, other), 0.0)
+        bottom[c] = max(min(max(nearest, other), last), -1.0)
+
+
+@vector
+def _moments(
+    top: Pixels,
+    bottom: Pixels,
+    rows: Floats,
+    grey: Pixels,
+    grey_depth: Pixels,
+    variance: Pixels,
+    sums: Floats,
+) -> None:
+    """Sums as in ``bands`` from those over depths below ``top``."""
+    for c in range(uintp(top.size)):
+        n, d = max(bottom[c] - top[c] + 1.0, 0.0), top[c] - rows[c]
+        sums[_N, c] = n
+        sums[_D, c] = n * (d + 0.5 * (n - 1.0))
+        sums[_DD, c] = n * (d * d + d * (n - 1.0) + (n - 1.0) * (2.0 * n - 1.0) / 6.0)
+        sums[_GREY, c] = grey[c]
+        sums[_GREY_D, c] = grey_depth[c] + d * grey[c]
+        sums[_VARIANCE, c] = variance[c]
+
+
+@vector
+def _add_pixels(
+    image: Pixels,
+    top: Pixels,
+    bottom: Pixels,
+    left: int,
+    right: int,
+    neighbour: int,
+    first: int,
+    stop: int,
+    grey: Pixels,
+    grey_depth: Pixels,
+    variance: Pixels,
+) -> None:
+    """Add the pixels between top and bottom of the columns from ``left`` to ``right``.
+
+    The noise is taken from differences to the ``neighbour`` at +1 or -1. Row by row, those outside as zeros: they cost
+    less than to jump from column to column. Single precision holds the sums of 12-bit grey values exactly.
+    """
+    beside = uintp(neighbour)  # unsigned numbers wrap: c + beside is c - 1 for -1
+    for r in range(uintp(first), uintp(stop)):
+        row = np.float32(r)
+        for c in range(uintp(left), uintp(right)):
+            counts = (row >= top[c]) & (row <= bottom[c])
+            here = np.float32(image[r, c])
+            step = np.float32(image[r, c + beside]) - here
+            here = here if counts else np.float32(0.0)
+            step = step if counts else np.float32(0.0)
+            grey[c] += here
+            grey_depth[c] += here * (row - top[c])
+            variance[c] += np.float32(0.5) * step * step
