@@ -29,8 +29,8 @@ CHECKED_STEPS = 50
 TOLERANCE = 1e-9
 STATE_BYTES = 7 * 8 + 6 * 8
 """Kept per element: coordinates, displacements, velocities, inverse mass of a node; six numbers of a Prony term."""
-TRAFFIC_BYTES = (2 + 2 * 2 + 2 * 2 + 1 + 2 * 6) * 8
-"""Moved per update, if nothing but the row buffers stays in a cache: reads, and writes where there are any."""
+TRAFFIC_BYTES = (2 * 2 + 2 * 2 + 1 + 2 * 6) * 8
+"""Moved per update, if nothing but single rows stays in a cache: reads, and writes where there are any."""
 
 
 def check(n_elements: int, folder: Path) -> dict[str, float]:

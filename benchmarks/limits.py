@@ -28,7 +28,7 @@ from wrinklewave.environment import processor
 SIZES = (1e4, 1e5, 1e6, 4e6, 1e7)
 UPDATES = 6e6
 """Per timing."""
-READ, WRITTEN = ("X", "Y", "inverse_mass"), ("u", "w", "vx", "vy")
+READ, WRITTEN = ("x", "y", "inverse_mass"), ("u", "w", "vx", "vy")
 """Nodal arrays that a step reads only, or reads and writes."""
 
 COLUMNS = (
@@ -39,12 +39,13 @@ HEADING = "| " + " | ".join(COLUMNS) + " |\n|" + " --- |" * len(COLUMNS)
 
 
 def bytes_per_update(model: Model) -> dict[str, float]:
-    """Bytes that one element and its node keep, and that a step moves if only row buffers stay in a cache."""
-    of_nodes = {name: getattr(model.arrays, name).itemsize for name in (*READ, *WRITTEN)}
+    """Bytes of one element and its node that a step needs, and that it moves if only single rows stay in a cache."""
+    arrays = {name: getattr(model.arrays, name) for name in (*READ, *WRITTEN)}
+    of_nodes = {name: values.itemsize for name, values in arrays.items() if values.ndim == 2}
     memory = model.memory.shape[0] * model.memory.itemsize
     written = sum(of_nodes[name] for name in WRITTEN) + memory
-    kept = sum(of_nodes.values()) + memory
-    return {"kept": kept, "moved": kept + written}
+    needed = sum(of_nodes.values()) + memory
+    return {"needed": needed, "moved": needed + written}
 
 
 def best_rates(runs: dict[str, Callable[[int], None]], n_elements: int, repetitions: int) -> dict[str, float]:
@@ -70,7 +71,7 @@ def measure(size: float, libraries: dict[str, Any], threads: int, repetitions: i
     for name, library in libraries.items():
         runs[f"c_{name}"] = CVersion(library, start.copy()).advance
     rates = best_rates(runs, n, repetitions)
-    state = n * moved["kept"]
+    state = n * moved["needed"]
     copies = {f"copy_{t}_bytes_per_s": copy_bandwidth(state, t) for t in range(1, threads + 1)}
     return {"elements": n, "state_bytes": state, **rates, **copies}
 
@@ -111,7 +112,7 @@ def main() -> None:
     print(
         f"{machine['processor']}, {machine['cores']} cores, {machine['date']}; million element updates per second"
     )
-    print(f"an update: {operations} operations, {moved['moved']} bytes moved of {moved['kept']} kept;")
+    print(f"an update: {operations} operations, {moved['moved']} bytes moved of {moved['needed']} needed;")
     print(
         f"multiply-adds: {', '.join(f'{r / 1e9:.0f}' for r in rates.values())} billion operations/s\n\n{HEADING}"
     )

@@ -19,7 +19,7 @@ def _all_element_rows(n_steps, a, memory, terms):
     for _ in range(n_steps):
         for j in range(rows):
             above = separate(a.forces[0, j % 2])
-            element_row(j, 0, columns, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, above)
+            element_row(j, 0, columns, a.x, a.y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, above)
 
 
 @dataclass(eq=False)

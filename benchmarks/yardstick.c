@@ -5,6 +5,17 @@
 #include <math.h>
 #include <string.h>
 
+/* Coordinates by row and by column, or those of every node, as a mesh that is no plain grid needs them. */
+#ifdef ANY_MESH
+#define OF_ROW(i) i
+#define X_ABOVE(X, columns) ((X) + (columns) + 1)
+#define X_FROM(a, place) ((a)->X + (place))
+#else
+#define OF_ROW(i) 0
+#define X_ABOVE(X, columns) (X)
+#define X_FROM(a, place) ((a)->X)
+#endif
+
 typedef const double *restrict In;
 typedef double *restrict InOut;
 
@@ -38,14 +49,17 @@ static inline double remember(double *restrict Z, long i, double shape, double b
 }
 
 /* Forces of one row of elements between two rows of nodes (0 below, 1 above) on their corners. */
-static void element_row(long n, In X0, In Y0, In X1, In Y1, In u0, In w0, In u1, In w1, In vx0, In vy0, In vx1, In vy1,
+static void element_row(long n, In X0, In Y0, In Y1, In u0, In w0, In u1, In w1, In vx0, In vy0, In vx1, In vy1,
                         InOut Z0, InOut Z1, InOut Z2, InOut Z3, InOut Z4, InOut Z5, double mu, double K, double linear,
                         double quadratic, double hourglass, double b, double decay, double b_next, InOut f1x, InOut f1y,
                         InOut f2x, InOut f2y, InOut f3x, InOut f3y, InOut f4x, InOut f4y) {
+    In X1 = X_ABOVE(X0, n);
     for (long i = 0; i < n; i++) {
         long k = i + 1;
-        double x13 = X0[i] - X1[k], y13 = Y0[i] - Y1[k], x24 = X0[k] - X1[i], y24 = Y0[k] - Y1[i];
-        double hX = (X0[i] - X0[k]) + (X1[k] - X1[i]), hY = (Y0[i] - Y0[k]) + (Y1[k] - Y1[i]);
+        double x13 = X0[i] - X1[k], y13 = Y0[OF_ROW(i)] - Y1[OF_ROW(k)];
+        double x24 = X0[k] - X1[i], y24 = Y0[OF_ROW(k)] - Y1[OF_ROW(i)];
+        double hX = (X0[i] - X0[k]) + (X1[k] - X1[i]);
+        double hY = (Y0[OF_ROW(i)] - Y0[OF_ROW(k)]) + (Y1[OF_ROW(k)] - Y1[OF_ROW(i)]);
         double u13 = u0[i] - u1[k], u24 = u0[k] - u1[i], w13 = w0[i] - w1[k], w24 = w0[k] - w1[i];
         double qx = (u0[i] - u0[k]) + (u1[k] - u1[i]), qy = (w0[i] - w0[k]) + (w1[k] - w1[i]);
         double A2 = x13 * y24 - x24 * y13, inverse = 1.0 / A2;
@@ -109,7 +123,7 @@ static double *buffer(const Block *a, long j) { return a->forces + (j & 1) * 8 *
 static void forces_of_row(const Block *a, long j) {
     long n = a->columns, stride = a->rows * n, P = n + 2, below = j * (n + 1), above = below + n + 1;
     double *Z = a->memory + j * n, *f = buffer(a, j) + 1;
-    element_row(n, a->X + below, a->Y + below, a->X + above, a->Y + above, a->u + below, a->w + below, a->u + above,
+    element_row(n, X_FROM(a, below), a->Y + below, a->Y + above, a->u + below, a->w + below, a->u + above,
                 a->w + above, a->vx + below, a->vy + below, a->vx + above, a->vy + above, Z, Z + stride, Z + 2 * stride,
                 Z + 3 * stride, Z + 4 * stride, Z + 5 * stride, a->mu, a->K, a->linear, a->quadratic, a->hourglass, a->b,
                 a->decay, a->b_next, f, f + P, f + 2 * P, f + 3 * P, f + 4 * P, f + 5 * P, f + 6 * P, f + 7 * P);

@@ -4,10 +4,13 @@ import numpy as np
 import pytest
 
 from support.backend_runs import MODELS
+from support.models import ELEMENTS, build, relaxing
 from wrinklewave.dynamics.barrier import LINE
-from wrinklewave.dynamics.boundary import N_TOTALS, WORK
+from wrinklewave.dynamics.boundary import FIXED, N_TOTALS, WORK
+from wrinklewave.dynamics.model import Model
 from wrinklewave.dynamics.step import advance
 from wrinklewave.dynamics.team import share_out
+from wrinklewave.mesh.block import block
 
 STATE = ("u", "w", "vx", "vy")
 
@@ -30,6 +33,27 @@ def test_the_number_of_threads_changes_no_bit(name, parts):
     one, many = marched(name, 1), marched(name, parts)
     assert one["totals"][WORK] != 0
     assert all(np.array_equal(one[key], many[key]) for key in one)
+
+
+def moving(element: str) -> Model:
+    """A graded block, its nodes at rest at random places."""
+    mesh = block(length=12e-3, bottom=0.0, top=5e-3, elements=(11, 5), grading=(0.5, 1.3))
+    model = build(mesh, relaxing(bulk=True), element, right=FIXED, bulk_viscosity=(0.06, 1.2))
+    model.arrays.u[:], model.arrays.w[:] = 5e-5 * np.random.default_rng(3).standard_normal((2, 6, 12))
+    return model
+
+
+@pytest.mark.parametrize("element", ELEMENTS)
+def test_coordinates_by_row_and_column_are_those_of_the_nodes(element):
+    states = []
+    for model, by_node in ((moving(element), False), (moving(element), True)):
+        a = model.arrays
+        assert (a.x.shape, a.y.shape) == ((12,), (6,))
+        a = a._replace(x=a.X, y=a.Y) if by_node else a
+        advance(100, 0.0, 0.0, 2e-7, a, model.memory_rows, model.terms, model.boundary, np.zeros(N_TOTALS))
+        states.append([*(getattr(a, field) for field in STATE), model.memory])
+    for by_row, by_node in zip(*states, strict=True):
+        np.testing.assert_allclose(by_row, by_node, rtol=0, atol=1e-12 * np.abs(by_node).max())
 
 
 def test_a_failure_in_a_share_is_told():

@@ -14,6 +14,7 @@ from wrinklewave.dynamics.elements.quadrilateral import (
     twice_area,
     twice_area_rate,
 )
+from wrinklewave.dynamics.points import corners_x, corners_y
 from wrinklewave.materials.neo_hookean import (
     first_piola_kirchhoff,
     inverse_cube_root,
@@ -67,8 +68,8 @@ def mean_dilatation_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, mo
     stride = len(memory) // len(terms)
     bulk_relaxes = stride == 17
     k, s = i + ONE, r + ONE
-    X1, X2, X3, X4 = X[r, i], X[r, k], X[s, k], X[s, i]
-    Y1, Y2, Y3, Y4 = Y[r, i], Y[r, k], Y[s, k], Y[s, i]
+    X1, X2, X3, X4 = corners_x(X, r, i)
+    Y1, Y2, Y3, Y4 = corners_y(Y, r, i)
     u1, u2, u3, u4 = u[r, i], u[r, k], u[s, k], u[s, i]
     w1, w2, w3, w4 = w[r, i], w[r, k], w[s, k], w[s, i]
 

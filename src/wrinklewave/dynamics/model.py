@@ -171,9 +171,13 @@ def assemble(
     runs, first_run = material_runs(mesh.layer)
     parts = min(threads, rows)
     nodes = mesh.X.shape
+    X, Y = np.ascontiguousarray(mesh.X, number), np.ascontiguousarray(mesh.Y, number)
+    is_plain = not (np.ptp(X, axis=0).any() or np.ptp(Y, axis=1).any())
     arrays = Arrays(
-        X=np.ascontiguousarray(mesh.X, number),
-        Y=np.ascontiguousarray(mesh.Y, number),
+        X=X,
+        Y=Y,
+        x=X[0] if is_plain else X,
+        y=np.ascontiguousarray(Y[:, 0]) if is_plain else Y,
         u=np.zeros(nodes, number),
         w=np.zeros(nodes, number),
         vx=np.zeros(nodes, number),

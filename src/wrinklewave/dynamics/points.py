@@ -42,6 +42,22 @@ def corners(field, j, i):
 
 
 @scalar
+def corners_x(X, j, i):
+    """Undeformed x at the corners of element (j, i); ``X`` [n_columns] by column if the mesh is a plain grid."""
+    if X.ndim == 1:
+        return X[i], X[i + uintp(1)], X[i + uintp(1)], X[i]
+    return corners(X, j, i)
+
+
+@scalar
+def corners_y(Y, j, i):
+    """Undeformed y at the corners of element (j, i); ``Y`` [n_rows] by row if the mesh is a plain grid."""
+    if Y.ndim == 1:
+        return Y[j], Y[j], Y[j + uintp(1)], Y[j + uintp(1)]
+    return corners(Y, j, i)
+
+
+@scalar
 def area(x, y):
     """Area of a quadrilateral from its corners."""
     return 0.5 * ((x[2] - x[0]) * (y[3] - y[1]) - (x[3] - x[1]) * (y[2] - y[0]))

@@ -46,6 +46,24 @@ def differences(field, j, i):
 
 
 @scalar
+def differences_of_x(X, j, i):
+    """Of undeformed x; ``X`` [n_columns] by column if the mesh is a plain grid."""
+    if X.ndim == 1:
+        width = X[i] - X[i + ONE]
+        return width, -width, 0.0
+    return differences(X, j, i)
+
+
+@scalar
+def differences_of_y(Y, j, i):
+    """Of undeformed y; ``Y`` [n_rows] by row if the mesh is a plain grid."""
+    if Y.ndim == 1:
+        height = Y[j] - Y[j + ONE]
+        return height, height, 0.0
+    return differences(Y, j, i)
+
+
+@scalar
 def one_point_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     """Forces of element ``i`` of row ``r`` (unsigned), a one-point quadrilateral; ``memory`` goes to the next step.
 
@@ -55,8 +73,8 @@ def one_point_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, 
     stride = len(memory) // len(terms)
     bulk_relaxes = stride == 7
     k, s = i + ONE, r + ONE
-    x13, x24, hX = differences(X, r, i)
-    y13, y24, hY = differences(Y, r, i)
+    x13, x24, hX = differences_of_x(X, r, i)
+    y13, y24, hY = differences_of_y(Y, r, i)
     u13, u24, qx = differences(u, r, i)
     w13, w24, qy = differences(w, r, i)
     A2 = twice_area(x13, y13, x24, y24)

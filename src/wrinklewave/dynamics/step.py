@@ -54,6 +54,8 @@ class Arrays(NamedTuple):
 
     X: np.ndarray
     Y: np.ndarray
+    x: np.ndarray  # as elements read X: by column where the mesh is a plain grid, else X itself
+    y: np.ndarray  # as elements read Y: by row, or Y itself
     u: np.ndarray
     w: np.ndarray
     vx: np.ndarray
@@ -196,7 +198,7 @@ def _rows(part, start, stop, a, memory, terms, dt_velocity, dt):
         for k in range(a.first_run[j], a.first_run[j + 1]):
             begin, end, n = a.runs[k]
             factors, moduli = a.factors[n], a.moduli[n]
-            element_row(j, begin, end, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, forces)
+            element_row(j, begin, end, a.x, a.y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, forces)
         if j > first and j != border:
             _move_between(j, part, a, dt_velocity, dt)
 

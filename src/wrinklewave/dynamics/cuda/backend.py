@@ -290,7 +290,7 @@ class Batch:
 
 NODAL = Nodes._fields
 BY_LAYER = ("moduli", "terms", "factors")
-UNUSED = ("runs", "first_run", "shares", "nothing", "counts")
+UNUSED = ("x", "y", "runs", "first_run", "shares", "nothing", "counts")
 """Fields of the arrays: one row per row of nodes, one per layer, and those that no kernel reads."""
 
 
