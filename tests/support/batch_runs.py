@@ -48,7 +48,7 @@ def in_batches(folder: Path) -> None:
     """The sweep, interrupted after its first batch."""
 
     def interrupt(state: SweepProgress) -> None:
-        if state.done == 1:
+        if state.done == len(SPEEDS):
             signal.raise_signal(signal.SIGINT)
 
     first, _ = sweep(QUICK, OVER, out=folder, overrides=SMALL, jobs=1, device="cuda", progress=interrupt)

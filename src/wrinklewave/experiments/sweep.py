@@ -110,28 +110,28 @@ def sweep(
     _prepare(members, Path(out), resume=resume, overwrite=overwrite)
     left = [member for member in members if _ended(member) is None]
     jobs = min(jobs or processor().usable, len(members))
-    done = already = len(members) - len(left)
-    begin = time.perf_counter()
+    begin, to_run = time.perf_counter(), len(left)
     with Workers(jobs) as workers, interruptible() as wished:
         waiting = _submit(left, workers, jobs, chosen)
         while waiting and not wished():
-            for future in wait(waiting, PATIENCE, FIRST_COMPLETED).done:
-                for member, summary in zip(waiting.pop(future), future.result(), strict=True):
-                    done += 1
-                    pace = 60 * (done - already) / (time.perf_counter() - begin)
-                    progress(SweepProgress(done, len(members), member.name, summary, pace))
+            done, waiting = wait(waiting, PATIENCE, FIRST_COMPLETED)
+            for future in done:
+                future.result()  # raises what ends more than a run
+            for member, summary in [(m, s) for m in left if (s := _ended(m))]:
+                left.remove(member)
+                pace = 60 * (to_run - len(left)) / (time.perf_counter() - begin)
+                progress(SweepProgress(len(members) - len(left), len(members), member.name, summary, pace))
     table = write_tables(Path(out), axes, [(member, _ended(member) or {}) for member in members])
     return (Outcome.INTERRUPTED if waiting else Outcome.FINISHED), table
 
 
-def _submit(
-    members: Sequence[Member], workers: Workers, jobs: int, device: Device
-) -> dict[Future[list[dict[str, Any]]], list[Member]]:
-    """Have members run, one by one or in batches; their summaries will be the results."""
-    if device == "cpu" or not members:
-        return {workers.submit(run_member, member.case, member.folder): [member] for member in members}
-    together = [[members[place] for place in places] for places in batches([m.case for m in members], jobs)]
-    return {workers.submit(run_batch, [(m.case, m.folder) for m in batch]): batch for batch in together}
+def _submit(members: Sequence[Member], workers: Workers, jobs: int, device: Device) -> set[Future[None]]:
+    """Have members run, one by one or in batches; their summaries tell that they have ended."""
+    runs = [(member.case, member.folder) for member in members]
+    if device == "cpu" or not runs:
+        return {workers.submit(run_member, *run) for run in runs}
+    together = batches([case for case, _ in runs], jobs)
+    return {workers.submit(run_batch, [runs[place] for place in places]) for places in together}
 
 
 def _members(

@@ -5,12 +5,12 @@ from __future__ import annotations
 import multiprocessing
 import signal
 from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import suppress
 from multiprocessing.synchronize import Event
 from typing import TYPE_CHECKING, Any
 
 from wrinklewave.errors import RunError
 from wrinklewave.experiments.batch import simulate_together
-from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.simulate import simulate
 
 if TYPE_CHECKING:
@@ -51,24 +51,16 @@ def _begin(end: Event) -> None:
     )  # of the whole group: the sweep hears it and tells its processes
 
 
-def run_member(case: Case, folder: Path) -> list[dict[str, Any]]:
-    """Simulate a case on one thread, or go on with it; returns its summary, also of a run that failed."""
-    try:
-        run = simulate(case, out=folder, threads=1, resume=True, progress=_stop_if_told)
-        return [run.summary]
-    except RunError as error:
-        return [_failure(error)]
+def run_member(case: Case, folder: Path) -> None:
+    """Simulate a case on one thread, or go on with it; a failure stands in its summary."""
+    with suppress(RunError):
+        simulate(case, out=folder, threads=1, resume=True, progress=_stop_if_told)
 
 
-def run_batch(runs: Sequence[tuple[Case, Path]]) -> list[dict[str, Any]]:
+def run_batch(runs: Sequence[tuple[Case, Path]]) -> None:
     """The same of cases of one shape, on the GPU at the same time."""
-    ends = dict(simulate_together(runs, _stop_if_told))
-    outcomes = (ends[place] for place in range(len(runs)))
-    return [_failure(end) if isinstance(end, RunError) else end.summary for end in outcomes]
-
-
-def _failure(error: RunError) -> dict[str, Any]:
-    return {"outcome": Outcome.FAILED.name.lower(), "message": str(error)}
+    for _ in simulate_together(runs, _stop_if_told):
+        pass
 
 
 def _stop_if_told(state: Progress) -> None:
