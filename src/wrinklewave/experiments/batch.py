@@ -40,6 +40,13 @@ def simulate_together(
         yield from answered_together(running, batch.march)
 
 
+def processes_at_once(wish: int) -> int:
+    """As many processes as are wished for and the memory of the current CUDA device has room for."""
+    from wrinklewave.dynamics.cuda.backend import most_processes
+
+    return int(min(wish, most_processes()))
+
+
 def batches(cases: Sequence[Case], processes: int) -> list[list[int]]:
     """Places of cases that make batches: of one shape each, one or more for every process, as the GPU has room for.
 

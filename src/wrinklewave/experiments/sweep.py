@@ -15,7 +15,7 @@ from wrinklewave.config import Case, load_case
 from wrinklewave.config.overrides import alternatives
 from wrinklewave.environment import choose_device, processor
 from wrinklewave.errors import InputError
-from wrinklewave.experiments.batch import batches
+from wrinklewave.experiments.batch import batches, processes_at_once
 from wrinklewave.experiments.interruption import Outcome, interruptible
 from wrinklewave.experiments.sweep_table import write_tables
 from wrinklewave.experiments.sweep_workers import Workers, run_batch, run_member
@@ -92,7 +92,8 @@ def sweep(
         over: the axes, each ``"key=value, value, ..."``.
         out: folder for the runs, the dataset ``sweep.nc`` and the table ``sweep.csv``.
         overrides: ``"key=value"`` for all runs.
-        jobs: processes, default one per core. Each has one run at a time, on one thread; on a GPU a batch of them.
+        jobs: processes, default one per core, on a GPU as far as its memory goes. Each has one run at a time, on one
+            thread, or a batch of them on a GPU.
         device: as for :func:`simulate`.
         resume: go on with the sweep in ``out``: runs that have ended stay as they are, others go on.
         overwrite: replace an earlier sweep in ``out``.
@@ -109,7 +110,7 @@ def sweep(
     chosen = choose_device(device)
     _prepare(members, Path(out), resume=resume, overwrite=overwrite)
     left = [member for member in members if _ended(member) is None]
-    jobs = min(jobs or processor().usable, len(members))
+    jobs = min(jobs or _processes(chosen), len(members))
     begin, to_run = time.perf_counter(), len(left)
     with Workers(jobs) as workers, interruptible() as wished:
         waiting = _submit(left, workers, jobs, chosen)
@@ -123,6 +124,12 @@ def sweep(
                 progress(SweepProgress(len(members) - len(left), len(members), member.name, summary, pace))
     table = write_tables(Path(out), axes, [(member, _ended(member) or {}) for member in members])
     return (Outcome.INTERRUPTED if waiting else Outcome.FINISHED), table
+
+
+def _processes(device: Device) -> int:
+    """One per core, as far as a GPU has room for them."""
+    cores = processor().usable
+    return cores if device == "cpu" else processes_at_once(cores)
 
 
 def _submit(members: Sequence[Member], workers: Workers, jobs: int, device: Device) -> set[Future[None]]:

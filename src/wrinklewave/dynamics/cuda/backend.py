@@ -30,6 +30,8 @@ SIMULATED_THREADS = 4
 WARP = 32
 MOST_MEMBERS = 64
 """Of a batch: more do not fill a device any better, and keep more results waiting."""
+CONTEXT = 0.6e9
+"""About how many bytes of the device a process takes before it has any arrays there."""
 USED_MEMORY = 0.8
 """Part of the device's free memory that batches may take."""
 FORCES, OUTPUTS = 8, 6
@@ -91,9 +93,14 @@ def memory_of(model: Model) -> int:
 
 
 def most_members(model: Model, batches: int) -> int:
-    """How many models of one shape each of some batches can have, as far as the device's memory goes."""
-    free = USED_MEMORY * cuda.current_context().get_memory_info().free / batches
+    """How many models of one shape each of some batches, in processes of their own, can have the memory for."""
+    free = USED_MEMORY * cuda.current_context().get_memory_info().free / batches - CONTEXT
     return max(1, int(min(MOST_MEMBERS, free / memory_of(model))))
+
+
+def most_processes() -> float:
+    """How many processes the device's memory has room for, with as much again for their batches."""
+    return max(1.0, cuda.current_context().get_memory_info().free / (2 * CONTEXT))
 
 
 class Batch:
