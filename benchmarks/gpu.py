@@ -5,8 +5,8 @@ six. In order, each result written as soon as it is there, so that a run that is
 
 1. the paper's case, its first 1,000 steps on both devices, to 1e-10;
 2. element updates per second by mesh size, and what fraction of the copy bandwidth they move;
-3. stepping times of the paper's case with K_i and of the resolved one, to the end;
-4. runs per minute of the paper's case, K_0 and K_i, in batches of 1 to 256, each member struck at a speed of its own;
+3. stepping time of the resolved case, to its end;
+4. the same of the paper's case, K_0 and K_i, and runs per minute in batches of 1 to 256, each struck at its own speed;
 5. the backends' test body: every small model of the tests on both devices, to 1e-10;
 6. output: the same with 500 snapshots copied to the host, of one run and of a batch;
 7. steps with registers for more threads, some of which then do not suffice.
@@ -254,7 +254,6 @@ def checks() -> Iterator[tuple[str, Callable[[], Result]]]:
     yield "paper_case_against_cpu", paper_case
     for size in EXTENT.sizes:
         yield f"throughput_{size:.0e}", lambda size=size: throughput(size)
-    yield "paper_K_i", lambda: batch_of(1, parts.K_I)
     yield "resolved", lambda: whole_runs([resolved()])
     for n in EXTENT.batches:
         for name, K in (("K_0", parts.K_0), ("K_i", parts.K_I)):

@@ -13,9 +13,10 @@ from numba import config, cuda
 from wrinklewave.dynamics.backends import March, Sample, Snapshot
 from wrinklewave.dynamics.boundary import N_TOTALS, Boundary, Nodes, n_edge_nodes
 from wrinklewave.dynamics.cuda import kernels
+from wrinklewave.dynamics.cuda.kernels import Tall
 from wrinklewave.dynamics.energy import KINETIC, N_COLUMNS, N_SUMS
 from wrinklewave.dynamics.fields import FIELDS
-from wrinklewave.dynamics.step import Arrays, update_factors
+from wrinklewave.dynamics.step import update_factors
 from wrinklewave.errors import InputError
 
 if TYPE_CHECKING:
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 SIMULATED_THREADS = 4
 """In numba's simulator every thread is one of Python's."""
 WARP = 32
+NODAL = Nodes._fields
+BY_LAYER = ("moduli", "terms", "factors")
 MOST_MEMBERS = 64
 """Of a batch: more do not fill a device any better, and keep more results waiting."""
 CONTEXT = 0.6e9
@@ -43,10 +46,8 @@ config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # meshes too small to fill a GPU are no 
 class _Resident(NamedTuple):
     """What stays on the device: arguments of the kernels, see :mod:`wrinklewave.dynamics.cuda.kernels`."""
 
-    arrays: Arrays
-    layer: Any
+    tall: Tall
     memory: tuple[Any, ...]
-    density: Any
     boundary: Boundary
 
 
@@ -172,13 +173,13 @@ class Batch:
             if march.n > 1:
                 update_factors(terms, march.dt, march.dt, factors)
             self._factors[own] = factors
-        self.resident.arrays.factors.copy_to_device(self._factors, stream=self.stream)  # type: ignore[attr-defined]  # on the device it is a device array
+        self.resident.tall.factors.copy_to_device(self._factors, stream=self.stream)
         return cuda.to_device(first_factors, stream=self.stream)
 
     def _step(self, n: NDArray[np.int64], *launch: Any) -> None:
         d = self.resident
-        arguments = (cuda.to_device(n, stream=self.stream), *launch, d.arrays, d.layer, d.memory)
-        arguments = (*arguments, self._models[0].terms, self._nodes, d.boundary, self._buffers.totals)
+        arguments = (cuda.to_device(n, stream=self.stream), *launch, d.tall, d.memory, self._models[0].terms)
+        arguments = (*arguments, self._nodes, d.boundary, self._buffers.totals)
         self._grid = self._grid or self._cooperating(arguments)
         kernels.steps[(*self._grid, self.stream)](*arguments)
 
@@ -187,7 +188,7 @@ class Batch:
         d, b, count, height = self.resident, self._buffers, members.size, self._height
         launch = kernels.sample[count * height, self.threads, self.stream, self._shared]
         terms, sums, edges = self._models[0].terms, b.sums[:count], b.edges[:count]
-        launch(members, times, d.arrays, d.layer, d.memory, terms, b.totals, sums, edges)
+        launch(members, times, d.tall, d.memory, terms, b.totals, sums, edges)
         self._estimate_steps(members)
         found = (values[:count].copy_to_host(stream=self.stream) for values in (sums, edges, b.least))
         sums, edges, least = found
@@ -195,10 +196,10 @@ class Batch:
         return sums, edges, least.min(axis=1)
 
     def _estimate_steps(self, members: Any) -> None:
-        d, b, count = self.resident, self._buffers, members.size
+        b, count = self._buffers, members.size
         blocks = count * (self._height - 1)
         launch = kernels.stable_steps[blocks, self.threads, self.stream, self._shared]
-        launch(len(self._models), members, d.arrays, d.layer, d.density, b.steps, b.least[:count])
+        launch(len(self._models), members, self.resident.tall, b.steps, b.least[:count])
 
     def stable_steps(self, place: int) -> NDArray[np.float64]:
         """Largest stable step of each element of a member [s], shape [n_rows, n_columns]."""
@@ -224,20 +225,14 @@ class Batch:
     def resident(self) -> _Resident:
         """Everything, brought to the device at the first use."""
         arrays = [model.arrays for model in self._models]
-        tall = {name: np.concatenate([getattr(a, name) for a in arrays]) for name in NODAL + BY_LAYER}
-        tall |= {name: np.zeros(0, np.int64) for name in UNUSED}
-        columns = arrays[0].X.shape[1] - 1
-        forces = np.zeros((len(tall["u"]), 8, columns + 2), arrays[0].u.dtype)
-        layers = self._tall([model.mesh.layer.astype(np.uint8) for model in self._models])
+        tall = {name: np.concatenate([getattr(a, name) for a in arrays]) for name in (*NODAL, *BY_LAYER)}
+        tall["density"] = np.concatenate([model.density for model in self._models])
+        tall["forces"] = np.zeros((len(tall["u"]), 8, tall["u"].shape[1] + 1), tall["u"].dtype)
+        tall["layer"] = self._tall(model.mesh.layer.astype(np.uint8) for model in self._models)
         components = zip(*(model.memory for model in self._models), strict=True)
         return _Resident(
-            arrays=Arrays(
-                **{name: cuda.to_device(values) for name, values in tall.items()},
-                forces=cuda.to_device(forces),
-            ),
-            layer=cuda.to_device(layers),
+            tall=Tall(**{name: cuda.to_device(values) for name, values in tall.items()}),
             memory=tuple(cuda.to_device(self._tall(component)) for component in components),
-            density=cuda.to_device(np.concatenate([model.density for model in self._models])),
             boundary=_stacked([model.boundary for model in self._models]),
         )
 
@@ -269,7 +264,7 @@ class Batch:
     def _nodes(self) -> Nodes:
         """Fields of nodes by member."""
         shape = (len(self._models), *self._models[0].mesh.X.shape)
-        return Nodes(*(getattr(self.resident.arrays, name).reshape(shape) for name in NODAL))
+        return Nodes(*(getattr(self.resident.tall, name).reshape(shape) for name in NODAL))
 
     @cached_property
     def _buffers(self) -> _Buffers:
@@ -293,12 +288,6 @@ class Batch:
         compiled = kernel.compile(tuple(kernel.typeof_pyval(argument) for argument in arguments))
         threads = compiled.max_threads_per_block // WARP * WARP
         return min(-(-nodes // threads), compiled.max_cooperative_grid_blocks(threads)), threads
-
-
-NODAL = Nodes._fields
-BY_LAYER = ("moduli", "terms", "factors")
-UNUSED = ("x", "y", "runs", "first_run", "shares", "nothing", "counts")
-"""Fields of the arrays: one row per row of nodes, one per layer, and those that no kernel reads."""
 
 
 def _stacked(boundaries: Sequence[Boundary]) -> Boundary:
@@ -350,7 +339,7 @@ class Cuda:
         blocks = -(-model.mesh.X.size // batch.threads)
         launch = kernels.snapshot[blocks, batch.threads, batch.stream]
         own = self._own
-        launch(own.arrays, own.layer, own.memory, model.terms, slot.nodal, slot.elements)
+        launch(own.tall, own.memory, model.terms, slot.nodal, slot.elements)
         ready, copied = cuda.event(), cuda.event()
         ready.record(batch.stream)
         ready.wait(batch.copies)
@@ -371,7 +360,7 @@ class Cuda:
         """Copy displacements, velocities and memory to the model."""
         own, model, stream = self._own, self._model, self._batch.stream
         for name in ("u", "w", "vx", "vy"):
-            getattr(own.arrays, name).copy_to_host(getattr(model.arrays, name), stream=stream)
+            getattr(own.tall, name).copy_to_host(getattr(model.arrays, name), stream=stream)
         for component, kept in zip(own.memory, model.memory, strict=True):
             component.copy_to_host(kept, stream=stream)
         stream.synchronize()
@@ -380,12 +369,8 @@ class Cuda:
     def _own(self) -> _Resident:
         """Its part of what stays on the device."""
         d, elements = self._batch.resident, self._batch.rows(self._place)
-        nodes = slice(elements.start, elements.stop + 1)
-        arrays = {name: getattr(d.arrays, name)[nodes] for name in NODAL}
-        layers = self._batch.layers(self._place)
-        arrays |= {name: getattr(d.arrays, name)[layers] for name in BY_LAYER}
-        return d._replace(
-            arrays=d.arrays._replace(**arrays),
-            layer=d.layer[elements],
-            memory=tuple(component[elements] for component in d.memory),
-        )
+        nodes, layers = slice(elements.start, elements.stop + 1), self._batch.layers(self._place)
+        parts = dict.fromkeys(NODAL, nodes) | dict.fromkeys((*BY_LAYER, "density"), layers)
+        parts |= {"forces": nodes, "layer": elements}
+        tall = Tall(**{name: getattr(d.tall, name)[part] for name, part in parts.items()})
+        return d._replace(tall=tall, memory=tuple(component[elements] for component in d.memory))

@@ -5,16 +5,14 @@ node rows from ``b * height`` on, and the row of elements above its top nodes, w
 none. Their forces stay zero: they are what lies below and above a mesh. Every layer of every member is a material of
 its own. So what works on rows of elements or nodes needs to know of no batch.
 
-``a`` are the :class:`~wrinklewave.dynamics.step.Arrays` of the tall mesh, with two differences: ``forces``
-[n_tall_rows, 8, n_columns + 2] has a buffer for every row of elements, and ``layer`` [n_tall_rows, n_columns], counted
-within a member, stands in for runs. ``members`` are the places of those that take part in a launch, in the order of
-what the launch brings back. All that names ``cuda`` is in this one module, as numba's simulator demands.
+``members`` are the places of those that take part in a launch, in the order of what the launch brings back. All that
+names ``cuda`` is in this one module, as numba's simulator demands.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 from numba import cuda, float64, uintp
 
@@ -56,6 +54,28 @@ START, LAST_DT, DT = range(3)
 """Columns of ``times``: time of the present positions, the step that led to them, the step to take [s]."""
 
 
+class Tall(NamedTuple):
+    """Arrays of the tall mesh, by the names of the processor's :class:`~wrinklewave.dynamics.step.Arrays`.
+
+    ``forces`` [n_tall_rows, 8, n_columns + 2] have a buffer for every row of elements, ``layer``
+    [n_tall_rows, n_columns] is counted within a member, ``density`` [n_batch * n_layers] is that of each material.
+    """
+
+    X: Any
+    Y: Any
+    u: Any
+    w: Any
+    vx: Any
+    vy: Any
+    inverse_mass: Any
+    moduli: Any
+    terms: Any
+    factors: Any
+    density: Any
+    forces: Any
+    layer: Any
+
+
 def _kernel(function: Callable[..., Any]) -> Any:
     """Compile when first launched, and keep it on disk."""
     choose_cache(function)
@@ -63,17 +83,17 @@ def _kernel(function: Callable[..., Any]) -> Any:
 
 
 @cuda.jit(device=True)
-def _elements(active, members, height, factors, a, layer, memory, terms):
+def _elements(active, members, height, factors, a, memory, terms):
     """Forces of all elements of the first ``active`` members."""
-    columns = layer.shape[1]
+    columns = a.layer.shape[1]
     each = (height - 1) * columns
-    n_layers = a.moduli.shape[0] // (layer.shape[0] // height)
+    n_layers = a.moduli.shape[0] // (a.layer.shape[0] // height)
     for e in range(cuda.grid(1), active * each, cuda.gridsize(1)):
         b = members[e // each]
         j = e % each // columns
         i = e % each - j * columns
         j += b * height
-        n = b * n_layers + layer[j, i]
+        n = b * n_layers + a.layer[j, i]
         forces, moduli = a.forces[j], a.moduli[n]
         r, c = uintp(j), uintp(i)
         element(r, c, a.X, a.Y, a.u, a.w, a.vx, a.vy, memory, terms, factors[n], moduli, forces)
@@ -201,7 +221,7 @@ def _edges(step, active, members, times, a, nodes, boundary, totals):
 
 
 @_kernel
-def steps(n, members, times, first_factors, a, layer, memory, terms, nodes, boundary, totals):
+def steps(n, members, times, first_factors, a, memory, terms, nodes, boundary, totals):
     """Take ``n[k]`` steps with each member, those with the most coming first; ``times`` are [n_members, 3].
 
     The Prony coefficients of the first step, ``first_factors``, follow on a step of another length than the rest.
@@ -217,7 +237,7 @@ def steps(n, members, times, first_factors, a, layer, memory, terms, nodes, boun
         while n[active - 1] <= step:
             active -= 1
         factors = first_factors if step == 0 else a.factors
-        _elements(active, members, height, factors, a, layer, memory, terms)
+        _elements(active, members, height, factors, a, memory, terms)
         grid.sync()
         _edges(step, active, members, times, a, nodes, boundary, totals)
         _inner_nodes(step, active, members, height, times, a)
@@ -249,15 +269,15 @@ def _total(column, value, shared):
 
 
 @cuda.jit(device=True)
-def _sum_up_row(j, first_layer, dt, a, layer, memory, terms, shared, sums):
+def _sum_up_row(j, first_layer, dt, a, memory, terms, shared, sums):
     """Sums of row ``j`` of elements by one block, in an order that the size of the grid does not change.
 
     The contributions of the elements lie where their forces were: the next step computes those anew.
     """
-    thread, threads, columns = cuda.threadIdx.x, cuda.blockDim.x, layer.shape[1]
+    thread, threads, columns = cuda.threadIdx.x, cuda.blockDim.x, a.layer.shape[1]
     work = a.forces[j][:, 1:-1]
     for i in range(thread, columns, threads):
-        survey_run(j, i, i + 1, first_layer + layer[j, i], dt, a, memory, terms, work)
+        survey_run(j, i, i + 1, first_layer + a.layer[j, i], dt, a, memory, terms, work)
     for column in range(N_COLUMNS):
         value = BEYOND if column == J_LEAST else 0.0
         for i in range(thread, columns, threads):
@@ -266,14 +286,14 @@ def _sum_up_row(j, first_layer, dt, a, layer, memory, terms, shared, sums):
 
 
 @_kernel
-def sample(members, times, a, layer, memory, terms, totals, sums, edges):
+def sample(members, times, a, memory, terms, totals, sums, edges):
     """The present state in numbers: ``sums`` [n_members, height, N_SUMS] by rows, and of the ``edges``
     [n_members, N_TOTALS + 2] what they have gathered, and the displacement of the struck end's top corner.
     """
     shared = cuda.shared.array(0, float64)  # as much as the launch asks for
     thread, threads = cuda.threadIdx.x, cuda.blockDim.x
-    n_batch, n_edge, columns = totals.shape[0], totals.shape[1], layer.shape[1]
-    height, n_layers = layer.shape[0] // n_batch, a.moduli.shape[0] // n_batch
+    n_batch, n_edge, columns = totals.shape[0], totals.shape[1], a.layer.shape[1]
+    height, n_layers = a.layer.shape[0] // n_batch, a.moduli.shape[0] // n_batch
     for q in range(cuda.blockIdx.x, members.shape[0] * height, cuda.gridDim.x):
         k = q // height
         r = q - k * height
@@ -284,7 +304,7 @@ def sample(members, times, a, layer, memory, terms, totals, sums, edges):
             value += kinetic_energy(a.inverse_mass[j, i], a.vx[j, i], a.vy[j, i])
         sums[k, r, KINETIC] = _total(KINETIC, value, shared)
         if r < height - 1:
-            _sum_up_row(j, b * n_layers, times[k, DT], a, layer, memory, terms, shared, sums[k, r])
+            _sum_up_row(j, b * n_layers, times[k, DT], a, memory, terms, shared, sums[k, r])
             continue
         for total in range(N_TOTALS):
             value = 0.0
@@ -295,13 +315,13 @@ def sample(members, times, a, layer, memory, terms, totals, sums, edges):
 
 
 @_kernel
-def stable_steps(n_batch, members, a, layer, density, out, least):
-    """Largest stable step of each element [s], ``out`` as ``layer``, and the ``least`` of each row
+def stable_steps(n_batch, members, a, out, least):
+    """Largest stable step of each element [s], ``out`` [n_tall_rows, n_columns], and the ``least`` of each row
     [n_members, height - 1].
     """
     shared = cuda.shared.array(0, float64)  # as much as the launch asks for
-    thread, threads, columns = cuda.threadIdx.x, cuda.blockDim.x, layer.shape[1]
-    height, n_layers, rows = layer.shape[0] // n_batch, a.moduli.shape[0] // n_batch, least.shape[1]
+    thread, threads, columns = cuda.threadIdx.x, cuda.blockDim.x, a.layer.shape[1]
+    height, n_layers, rows = a.layer.shape[0] // n_batch, a.moduli.shape[0] // n_batch, least.shape[1]
     for q in range(cuda.blockIdx.x, members.shape[0] * rows, cuda.gridDim.x):
         k = q // rows
         r = q - k * rows
@@ -309,13 +329,13 @@ def stable_steps(n_batch, members, a, layer, density, out, least):
         j = b * height + r
         value = BEYOND
         for i in range(thread, columns, threads):
-            stable_step_run(j, i, i + 1, b * n_layers + layer[j, i], a, density, out)
+            stable_step_run(j, i, i + 1, b * n_layers + a.layer[j, i], a, a.density, out)
             value = _combined(J_LEAST, value, out[j, i])
         least[k, r] = _total(J_LEAST, value, shared)
 
 
 @_kernel
-def snapshot(a, layer, memory, terms, nodal, elements):
+def snapshot(a, memory, terms, nodal, elements):
     """The present state of one member, whose rows alone all arguments have: ``nodal`` [4, ...] u, w, vx, vy, and the
     fields, ``elements`` [len(FIELDS), ...].
     """
@@ -323,7 +343,7 @@ def snapshot(a, layer, memory, terms, nodal, elements):
     for e in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
         j = e // columns
         i = e - j * columns
-        fields_run(j, i, i + 1, layer[j, i], a, memory, terms, elements)
+        fields_run(j, i, i + 1, a.layer[j, i], a, memory, terms, elements)
     rows, columns = a.u.shape
     for p in range(cuda.grid(1), rows * columns, cuda.gridsize(1)):
         j = p // columns
