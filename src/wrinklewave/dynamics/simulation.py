@@ -168,10 +168,16 @@ class Simulation:
     def _go(self, start: float, stop: float) -> Generator[March, Sample, None]:
         t = start
         while t < stop:
-            n = int(np.ceil((stop - t) / (self.safety * self._next_stable_step())))
+            if not self.last_dt or self.step + self._steps_in(stop - t) > self.last_step + self.patience:
+                self._estimate_stable_step()
+            n = self._steps_in(stop - t)
             dt, count = float(stop - t) / n, min(n, self.patience)
             yield from self._march(count, t, dt)
             t = stop if count == n else t + count * dt
+
+    def _steps_in(self, interval: float) -> int:
+        """Steps that fill a time [s], each safely below the last estimate."""
+        return int(np.ceil(interval / (self.safety * self.last_dt)))
 
     def _march(self, n: int, start: float, dt: float) -> Generator[March, Sample, None]:
         """Steps in groups, with a row of the history after each."""
@@ -187,14 +193,13 @@ class Simulation:
             self.totals += sample.totals
             self._record(self.reached, dt, sample)
 
-    def _next_stable_step(self) -> float:
-        """The stable step now; how fast it shrinks tells how many steps later it is to be asked for again."""
+    def _estimate_stable_step(self) -> None:
+        """Ask for the stable step; how fast it shrinks tells how many steps later it is to be asked for again."""
         dt, taken = self.stable_step(), self.step - self.last_step
         shrunk = max(1 - dt / (self.last_dt or dt), 1e-9)
         allowed = min(taken * SHRINKAGE / shrunk, MOST_STEPS) if taken else FEWEST_STEPS
         self.patience = max(1, int(min(allowed, max(self.patience, 2 * taken))))
         self.last_dt, self.last_step = dt, self.step
-        return dt
 
     def _record(self, t: float, dt: float, sample: Sample) -> None:
         a, rows = self.model.arrays, sample.survey
