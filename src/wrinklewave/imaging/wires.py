@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -33,6 +34,7 @@ _SMALLEST_SPACING = 5  # px between wires
 _WIDTHS = (0.5, 12.0)  # px
 _FIRST_WIDTH = 5.0  # px: to begin with
 _BESIDE = 6  # columns on either side that tell the background
+_SHARP = 5.0  # blurs beyond which a step is 0 or 1
 _FAINTEST = 0.5  # of the height known from the undeformed frames
 _CLEAR = 1.0  # blurs, and half a pixel: no closer to the surface is anything told of a wire
 
@@ -253,6 +255,8 @@ def _slope(rows: Floats, c: int) -> float:
 @allocating
 def _edge(u: float, blur: float) -> float:
     """A blurred, pixel-integrated unit step at the distance ``u``."""
+    if abs(u) > _SHARP * blur + 0.5:  # most pixels
+        return 1.0 if u > 0.0 else 0.0
     return blur * (normal_distribution((u + 0.5) / blur)[1] - normal_distribution((u - 0.5) / blur)[1])
 
 
@@ -262,6 +266,7 @@ def clearance_of_wires(blur: float) -> float:
     return _CLEAR * blur + 0.5
 
 
+@cache  # the same for all frames
 def _parts(length: float, blur: float) -> Floats:
     """Distances from the surface that divide a wire into parts that tell as much as each other."""
     low, high = clearance_of_wires(blur), min(length + 2.0 * blur, _LONGEST)
