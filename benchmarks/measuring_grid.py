@@ -8,8 +8,8 @@ films analytic travelling pulses with wrinkles on them, one thing changed at a t
 
 from __future__ import annotations
 
+import argparse
 import math
-import sys
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -118,7 +118,11 @@ the moment of contact a frame at 50 kHz."""
 
 def main() -> None:
     """Measure everything; write table and picture."""
-    docs = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs"
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("docs", type=Path, nargs="?", default=ROOT / "docs")
+    docs = parser.parse_args().docs
     done: dict[str, dict[str, float]] = {}
 
     def errors(recording: Recording) -> dict[str, float]:
