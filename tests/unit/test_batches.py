@@ -5,10 +5,14 @@ import json
 import pytest
 import xarray as xr
 
+from support.cases import EXAMPLES
 from support.elsewhere import run_elsewhere
+from wrinklewave.config import load_case
 from wrinklewave.dynamics.asking import answered_together
 from wrinklewave.errors import RunError
+from wrinklewave.experiments.batch import batches
 
+QUICK = EXAMPLES / "quick.toml"
 RUNS, FAILED = range(4), 1
 
 
@@ -61,6 +65,21 @@ def test_ended_members_of_a_sweep_are_not_run_again(folder):
     ended = [folder / "sweep" / "runs" / f"{n:04d}" / "summary.json" for n in (0, FAILED)]
     for summary in ended:
         assert outcomes["written"][str(summary)] == summary.stat().st_mtime_ns
+
+
+@pytest.mark.parametrize(
+    ("processes", "most", "sizes"),
+    [(1, 64, [5, 3]), (4, 64, [2, 2, 1, 2, 1]), (1, 2, [2, 2, 1, 2, 1]), (100, 64, [1] * 8)],
+)
+def test_cases_are_shared_out_by_their_shape(monkeypatch, processes, most, sizes):
+    pytest.importorskip("numba_cuda")
+    monkeypatch.setattr("wrinklewave.dynamics.cuda.backend.most_members", lambda model, processes: most)
+    meshes, n_wide = ["[6, 3]", "[5, 3]"], 5
+    choices = [f"mesh.elements={meshes[n >= n_wide]}" for n in range(8)]
+    found = batches([load_case(QUICK, [choice]) for choice in choices], processes)
+    assert [len(places) for places in found] == sizes
+    assert sorted(place for places in found for place in places) == list(range(8))
+    assert all(len({place < n_wide for place in places}) == 1 for places in found)
 
 
 def asks(marches, fails=False):
