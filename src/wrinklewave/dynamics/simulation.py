@@ -101,6 +101,7 @@ class Simulation:
 
     def __post_init__(self) -> None:
         self.backend: Backend = backend_for(self.device, self.model)
+        self._most_work, self._rows_seen = 0.0, 0  # largest external work in so many rows of the history
 
     @property
     def time(self) -> float:
@@ -117,11 +118,11 @@ class Simulation:
     @property
     def imbalance(self) -> float:
         """Energy imbalance now, over the largest external work so far."""
-        if not self.history:
-            return 0.0
         work, imbalance = HISTORY.index("external_work_J_per_m"), HISTORY.index("imbalance_J_per_m")
-        largest = max(abs(row[work]) for row in self.history)
-        return abs(self.history[-1][imbalance]) / largest if largest > 0 else 0.0
+        for row in self.history[self._rows_seen :]:
+            self._most_work = max(self._most_work, abs(row[work]))
+        self._rows_seen = len(self.history)
+        return abs(self.history[-1][imbalance]) / self._most_work if self._most_work > 0 else 0.0
 
     def run(self) -> Iterator[Event]:
         """Go from event to event; yields each when it is reached, the state at rest first.
