@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDTH, CAPTION, GAP = 10.0, 0.3, 0.08  # inches
+WIDTH, CAPTION, GAP = 10.0, 0.42, 0.08  # inches
+CAPTION_SIZE = 14.0  # points: a page shows these wide figures smaller than others
 SURFACE_COLOUR, WIRE_COLOUR = "#ffb000", "#4db8ff"
 
 
@@ -57,17 +58,17 @@ def detections_figure(detections: Sequence[Detection]) -> Figure:
             box = (GAP / WIDTH, bottom / total, 1 - 2 * GAP / WIDTH, (each - CAPTION) / total)
             axes = figure.add_axes(box)
             axes.imshow(detection.image, cmap="gray", vmin=low, vmax=high, interpolation="antialiased")
-            axes.set_title(detection.caption, pad=2)
+            axes.set_title(detection.caption, loc="left", fontsize=CAPTION_SIZE, pad=4)
             axes.set_axis_off()
             _draw(axes, detection)
     return figure
 
 
 def _draw(axes: Axes, detection: Detection) -> None:
-    axes.plot(*detection.surface, color=SURFACE_COLOUR, lw=0.8)
+    axes.plot(*detection.surface, color=SURFACE_COLOUR, lw=1.2)
     if np.isfinite(detection.struck_end):
-        axes.axvline(detection.struck_end, color=BOUNDARY_COLOUR, lw=0.8, ls="--")
-    axes.plot(*detection.wires, "o", ms=4, mfc="none", color=WIRE_COLOUR)
+        axes.axvline(detection.struck_end, color=BOUNDARY_COLOUR, lw=1.2, ls="--")
+    axes.plot(*detection.wires, "o", ms=6, mfc="none", color=WIRE_COLOUR)
     height, width = detection.image.shape
     axes.set(xlim=(-0.5, width - 0.5), ylim=(height - 0.5, -0.5))
 
