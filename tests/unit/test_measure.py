@@ -24,7 +24,7 @@ from wrinklewave.experiments import measure as measuring
 from wrinklewave.experiments.frame_blocks import FrameBlock, measure_block
 from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.measure import MeasuringProgress, learn, measure
-from wrinklewave.imaging.camera import Camera, Striker, Wires, film
+from wrinklewave.imaging.camera import Camera, Levels, Striker, Wires, film
 from wrinklewave.imaging.frame_measuring import FrameMeasurer
 from wrinklewave.imaging.frames import ArraySource, FrameSource, Image
 from wrinklewave.imaging.prepared import open_experiment
@@ -180,6 +180,28 @@ def test_a_tilted_sample_is_measured_along_its_own_axes(tmp_path: Path) -> None:
         assert rms(error) < 0.1 * PIXEL
 
 
+def test_a_striker_and_a_support_as_bright_as_the_sample(tmp_path: Path) -> None:
+    camera = Camera.framing(PULSE.surface(), scale=1 / PIXEL, levels=Levels(striker=Levels.sample))
+    recording = film(
+        PULSE.surface(),
+        camera.at_contrast_to_noise(20.0),
+        striker=Striker(velocity=10.0, stop_distance=1.5e-3),
+        frames_before=12,
+    )
+    write_recording(recording, tmp_path / "impact.tif")
+    text = EXPERIMENT.format(file="impact.tif", x_axis="right", y_axis="up")
+    (tmp_path / "impact.toml").write_text(text.replace("wires = { count = 2 }", ""), "utf-8")
+    found = measure(tmp_path / "impact.toml")
+    assert found.surface is not None
+    column = recording.truth()["boundary_column"].values
+    end = found.surface["x_boundary"].values / PIXEL - (column - column[0])
+    assert np.isfinite(end).all()
+    assert rms(end) < 0.06
+    assert found.summary["contact_on_recording_clock_s"] == pytest.approx(12 / 50e3, abs=2e-6)
+    assert found.summary["striker_separation_time_s"] == pytest.approx(1.5e-3 / 10.0, abs=2e-6)
+    assert any("as bright as the sample" in warning for warning in found.warnings)
+
+
 def test_an_interrupted_measurement_goes_on_and_ends_the_same(
     filmed: Path, measured: ww.Measurement, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -246,9 +268,21 @@ def test_what_cannot_be_measured_is_refused(filmed: Path, tmp_path: Path) -> Non
     at_rest = load_experiment(filmed / "impact.toml", ["video.frames=[0, 11]", "video.undeformed_frames=4"])
     with pytest.raises(InputError, match="no contact is seen"):
         measure(at_rest)
+    with pytest.raises(
+        InputError, match=r"calibration\.x_axis: in \d+% of the frames the struck end is seen at"
+    ):
+        measure(filmed / "impact.toml", overrides=["calibration.x_axis=left"])
     for mistake, message in (
         ("contact.time=90 ms", "90 ms is not within"),
         ("calibration.pixel_size=5 mm", "cut-off"),
+        (
+            "calibration.pixel_size=80 um",
+            r"calibration: in the undeformed images the sample is 25\.59 mm long",
+        ),
+        ("video.frames=[10, 13]", "too few frames"),
+        ("video.undeformed_frames=20", r"in frame 13 the struck end has moved by \+4\.0 px"),
+        ("wires={positions=[[200, 30]]}", r"no wire is seen within 10 px of \[200, 30\]"),
+        ("wires={positions=[[140, 30], [142, 30]]}", r"\[140, 30\] and \[142, 30\] are the same wire"),
     ):
         with pytest.raises(InputError, match=message):
             measure(filmed / "impact.toml", overrides=[mistake], progress=not_so_far)
@@ -261,6 +295,24 @@ def test_what_cannot_be_measured_is_refused(filmed: Path, tmp_path: Path) -> Non
     (tmp_path / "case.toml").write_text("")
     with pytest.raises(InputError, match="holds a run"):
         measure(at_rest, out=tmp_path)
+
+
+def test_errors_about_turned_frames_name_rows_and_columns_of_the_recording(
+    filmed: Path, tmp_path: Path
+) -> None:
+    with open_experiment(load_experiment(filmed / "impact.toml")) as source:
+        turned = np.stack([source.frame(i).T for i in range(14)])
+        write_recording(ArraySource(turned, bit_depth=12, frame_rate=50e3), tmp_path / "turned.tif")
+    text = EXPERIMENT.format(file="turned.tif", x_axis="down", y_axis="left")
+    (tmp_path / "turned.toml").write_text(text, "utf-8")
+    with pytest.raises(InputError, match=r"region\.columns: .*\n.*\n.*give more columns on the side"):
+        measure(tmp_path / "turned.toml", overrides=["region.columns=[0, 78]"])
+
+
+def test_a_striker_that_touches_from_the_first_frame_on_is_told_of(filmed: Path, tmp_path: Path) -> None:
+    found = measure(filmed / "impact.toml", overrides=["video.frames=[14, 38]", "video.undeformed_frames=1"])
+    assert any("touches in the first frame" in warning for warning in found.warnings)
+    assert found.summary["contact_on_recording_clock_s"] == pytest.approx(14.5 / 50e3)
 
 
 class Prolonged(FrameSource):

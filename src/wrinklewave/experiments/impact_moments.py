@@ -86,11 +86,14 @@ class EndTrack:
 
 
 def find_moments(track: EndTrack, contact: float | None = None) -> Impact:
-    """Find the moments of an impact; ``contact`` [s] is its time if that is known."""
+    """Find the moments of an impact; ``contact`` [s] is its time if that is known.
+
+    Where no striker is in sight, or touches in the first frame already, contact is when the struck end begins to move.
+    """
     first, stop = _contact_frames(track)
     touch = Moment(contact, 0.0) if contact is not None else NEVER
     if contact is None:
-        touch = _first_motion(track) if first is None else _closing(track, 0, first)
+        touch = _closing(track, 0, first) if first else _first_motion(track)
     separation = recontact = NEVER
     if stop is not None:
         again = np.flatnonzero(track.touching[stop:] == 1.0) + stop

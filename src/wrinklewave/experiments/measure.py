@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -20,7 +21,7 @@ from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.environment import processor
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.frame_blocks import BlockStore, FrameBlock, block_bounds, measure_block
-from wrinklewave.experiments.impact_moments import find_moments, with_exposure_uncertainty
+from wrinklewave.experiments.impact_moments import EndTrack, find_moments, with_exposure_uncertainty
 from wrinklewave.experiments.interruption import Outcome, interruptible
 from wrinklewave.experiments.measured_surface import (
     end_track,
@@ -56,6 +57,13 @@ OTHER_FRAMES = 24
 ANALYSED_VALUES = 1_000_000
 """Heights that are analysed at most: of a longer recording the first part after contact."""
 FRAMES_BEFORE = 20
+FEWEST_FRAMES = 4
+WRONG_SCALE = 0.25
+"""Relative difference between the length that is seen and the one that is given that can only be a mistake."""
+ASTRAY = 0.2
+"""Share of frames in which the struck end may be taken for something else, and of the length by which it is astray."""
+MOVED = 1.0
+"""Pixels by which the struck end of a sample at rest may move."""
 SPREAD_TIMES = (0.1, 0.25, 0.7)
 """Times for profiles where the experiment file names none: shares of the time after contact."""
 
@@ -155,6 +163,7 @@ def measure(
     ):
         _check_early(experiment, source)
         appearance, wires = learn(experiment, source)
+        check_scale(experiment, appearance)
         store = folder.blocks(_origin(experiment, source))
         measurer = FrameMeasurer(appearance, wires=wires, resolution=experiment.edge.resolution)
         kept = Path(out) if out else None
@@ -173,6 +182,7 @@ def _check_early(experiment: Experiment, source: PreparedSource) -> None:
     """What would stop the evaluation of all frames is better said before they are measured."""
     if experiment.calibration.kind != "sample-length":
         check_cutoff(experiment.analysis.filter_wavelength, experiment.calibration.pixel_size)
+    check_frames(source.n_frames)
     contact = experiment.contact.time
     assert source.times is not None  # impacts have a clock
     first, last = source.times[0], source.times[-1]
@@ -182,6 +192,55 @@ def _check_early(experiment: Experiment, source: PreparedSource) -> None:
             key="contact.time",
             expected=f"after {1e3 * first:.6g} ms and before {1e3 * last:.6g} ms, on the recording's clock",
             cure='correct it, or have it found: time = "detect"',
+        )
+
+
+def check_frames(n_frames: int) -> None:
+    """Whether there are frames enough for a surface motion.
+
+    Raises:
+        InputError: if not.
+    """
+    if n_frames < FEWEST_FRAMES:
+        raise InputError(
+            f"too few frames that can be used: {n_frames}",
+            key="video.frames",
+            expected=f"{FEWEST_FRAMES} at least: the sample at rest, and what follows",
+            cure="use more of the recording, or another one",
+        )
+
+
+def check_scale(experiment: Experiment, appearance: Appearance) -> None:
+    """Whether the undeformed sample is roughly as long in the images as it is said to be.
+
+    Raises:
+        InputError: if not; small differences are warned of later.
+    """
+    if experiment.calibration.kind == "sample-length":
+        return
+    columns = (appearance.held_end - appearance.struck_end) * np.hypot(1.0, appearance.line[1])
+    seen = columns * experiment.calibration.pixel_size
+    if np.isfinite(seen) and abs(seen / experiment.sample.length - 1.0) > WRONG_SCALE:
+        raise InputError(
+            f"in the undeformed images the sample is {1e3 * seen:.4g} mm long ({columns:.0f} px), "
+            f"not {1e3 * experiment.sample.length:.4g} mm",
+            key="calibration",
+            expected=f"a scale by which it is as long as sample.length says, to {WRONG_SCALE:.0%} at least",
+            cure="correct one of the two; give region if something else is taken for an end of the sample",
+        )
+
+
+def _check_direction(track: EndTrack, length: float) -> None:
+    """Whether the struck end stays where one of a sample of this ``length`` [px] can be."""
+    way = (track.column - track.rest)[np.isfinite(track.column)] / length
+    astray = (way < -ASTRAY) | (way > 0.5 + ASTRAY)
+    if astray.mean() > ASTRAY:
+        raise InputError(
+            f"in {astray.mean():.0%} of the frames the struck end is seen at {np.median(way[astray]):.0%} "
+            "of the sample's length",
+            key="calibration.x_axis",
+            expected="the direction in the image from the struck to the held end",
+            cure="turn it if the striker comes from the other side; give region if something stands before the sample",
         )
 
 
@@ -197,7 +256,10 @@ def learn(experiment: Experiment, source: PreparedSource) -> tuple[Appearance, W
             expected="at least one whole frame of the sample at rest at the beginning of the recording",
             cure="begin later with video.frames",
         )
-    appearance = learn_appearance(undeformed, _spread(source, source.n_frames, min(most, OTHER_FRAMES)))
+    others = _spread(source, source.n_frames, min(most, OTHER_FRAMES))
+    with _named_as_in_the_recording(source):
+        _check_at_rest(undeformed, others, experiment.video.undeformed_frames)
+        appearance = learn_appearance(undeformed, others)
     if experiment.wires is None:
         return appearance, None
     mean = np.asarray(np.mean(undeformed, axis=0, dtype=np.float64), dtype=np.float32)
@@ -206,6 +268,48 @@ def learn(experiment: Experiment, source: PreparedSource) -> tuple[Appearance, W
     names = [f"[{column:g}, {row:g}]" for column, row in given or ()]
     count = experiment.wires.count
     return appearance, learn_wires(mean, appearance, count=count, positions=places, names=names)
+
+
+def _check_at_rest(undeformed: Sequence[Image], others: Sequence[Image], n_frames: int) -> None:
+    """Whether the struck end is in the same place in all undeformed frames; those learnt from, spread evenly."""
+    look = learn_appearance(undeformed[:1], others)
+    measurer = FrameMeasurer(look)
+    ends = [measurer.measure(image).end for image in undeformed]
+    columns = np.array(
+        [end.column if end.gain > 0.0 or not np.isfinite(end.touch) else end.touch for end in ends]
+    )
+    moved = np.flatnonzero(np.abs(columns - columns[0]) > MOVED)
+    if moved.size:
+        frame = round(moved[0] * (n_frames - 1) / (len(undeformed) - 1))
+        raise InputError(
+            f"{n_frames}, but in frame {frame} the struck end has moved by "
+            f"{columns[moved[0]] - columns[0]:+.1f} px",
+            key="video.undeformed_frames",
+            expected="how many frames at the beginning show the sample at rest",
+            cure=f"lower it to {frame} or fewer",
+        )
+
+
+@contextmanager
+def _named_as_in_the_recording(source: PreparedSource) -> Iterator[None]:
+    """Errors about rows and columns of turned frames name what these are in the recording."""
+    try:
+        yield
+    except InputError as error:
+        if not source.transposed:
+            raise
+        raise InputError(
+            error.problem,
+            file=error.file,
+            key=_transposed(error.key),
+            expected=_transposed(error.expected),
+            cure=_transposed(error.cure),
+        ) from error
+
+
+def _transposed(text: str | None) -> str | None:
+    other = {"rows": "columns", "columns": "rows"}
+    return text and re.sub(r"\b(rows|columns)\b", lambda found: other[found[1]], text)
 
 
 def measure_frames(
@@ -244,10 +348,13 @@ def _evaluate(
 
     appearance = measurer.appearance
     series = frame_series(blocks())
+    check_frames(series.frame.size)
     assert source.times is not None  # impacts have a clock
     clock = source.times[series.frame]
     track = end_track(series, clock, experiment.video.undeformed_frames, appearance)
-    pixels = calibrate(experiment, appearance, track.rest)
+    with _named_as_in_the_recording(source):
+        pixels = calibrate(experiment, appearance, track.rest)
+    _check_direction(track, experiment.sample.length / pixels.pixel_size)
     impact = find_moments(track, experiment.contact.time)
     if not np.isfinite(impact.contact.time):
         raise InputError(

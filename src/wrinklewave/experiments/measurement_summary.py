@@ -110,15 +110,23 @@ def measurement_summary(
         "frames_analysed": surface.sizes["time"],
         "versions": versions(),
     }
-    return summary, list(source.notes) + _warnings(
-        source, locking, values["contrast_to_noise"], tracks, summary
-    )
+    return summary, list(source.notes) + _warnings(source, appearance, track, tracks, summary)
 
 
 def _warnings(
-    source: FrameSource, locking: float, ratio: float, tracks: WireTracks | None, summary: dict[str, Any]
+    source: FrameSource,
+    appearance: Appearance,
+    track: EndTrack,
+    tracks: WireTracks | None,
+    summary: dict[str, Any],
 ) -> list[str]:
     found = []
+    locking, ratio = summary["pixel_locking_px"], summary["contrast_to_noise"]
+    if track.touching[0] == 1.0:
+        found.append(
+            "The striker touches in the first frame already: contact is taken to be when the struck end begins to "
+            "move. If it was struck before, the sample was not at rest: begin earlier (video.frames)."
+        )
     if source.unreadable:
         named = "; ".join(f"{index}: {why}" for index, why in source.unreadable[:NAMED_FRAMES])
         more = len(source.unreadable) - NAMED_FRAMES
@@ -126,7 +134,7 @@ def _warnings(
             f"{len(source.unreadable)} of {source.n_frames} frames cannot be read and are left out "
             f"({named}{f'; and {more} more' if more > 0 else ''})."
         )
-    if locking > LOCKED:
+    if locking is not None and locking > LOCKED:
         found.append(
             f"Pixel locking of {locking:.3f} px: the profile of the edge is not that of a blurred step "
             "(too sharp for the pixels, compressed, or sharpened by the camera)."
@@ -134,7 +142,12 @@ def _warnings(
     if summary["struck_end_seen_share"] < 1.0 - OFTEN_LOST:
         found.append(
             f"The struck end is seen in {summary['struck_end_seen_share']:.0%} of the frames only: it must be in "
-            "sight, and the striker must not be as bright as the sample."
+            "sight, and a striker as bright as the sample must be higher or lower than it."
+        )
+    if appearance.striker_alike:
+        found.append(
+            "The striker is as bright as the sample: while they touch, the end is where their upper edges meet in a "
+            "step, and unknown where these are level. Paint the striker, or light it otherwise."
         )
     if ratio < FAINT:
         found.append(f"The contrast at the surface is only {ratio:.1f} times the noise.")

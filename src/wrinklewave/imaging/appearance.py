@@ -25,6 +25,9 @@ from wrinklewave.imaging.strips import Greys, strip_mean, strip_shares
 STRIP_ROWS = 48
 """Rows of the strip in the sample's body in which the ends are looked for."""
 
+NOT_LIKE = 0.15
+"""Shares of the contrast by which a striker differs from sample and background."""
+
 _FEWEST_ROWS = 8
 _FIRST_BLUR = 1.5  # px, where it matters little
 _FIRST_BLURS = (0.5, 1.0, 2.0, 4.0)  # px, to begin with
@@ -34,7 +37,8 @@ _BINS_PER_PIXEL = 10
 _END_SPAN = 6  # columns averaged on either side of a candidate for an end
 _END_STEP = 0.15  # contrasts: smallest step of an end
 _BLUR_FRAMES = 8
-_NOT_LIKE = 0.15  # shares of the contrast by which a striker differs from sample and background
+_LEAST_LEDGE = 4.0  # px
+_LINE_STEPS = 20
 
 
 @dataclass(frozen=True)
@@ -72,6 +76,11 @@ class Appearance:
     def clearance(self) -> float:
         """Distance from an end, or a wire, at which the surface is no longer disturbed by it [px]."""
         return clearance(self.optics.blur)
+
+    @property
+    def striker_alike(self) -> bool:
+        """Whether the striker looks like the sample."""
+        return self.striker is not None and abs(self.striker - 1.0) < NOT_LIKE
 
     @property
     def contrast(self) -> float:
@@ -174,15 +183,37 @@ def _ends(image: Pixels, rows: Floats, levels: Levels) -> tuple[float, float]:
             "the image ends just below the surface",
             key="region.rows",
             expected=f"at least {_FEWEST_ROWS} rows of the sample's body",
-            cure="give more rows on the side of the sample",
+            cure="give more rows on the side of the sample, or check calibration.x_axis and y_axis",
         )
     limit = max(_END_STEP * levels.contrast, 10.0 * levels.mean_noise / np.sqrt(_END_SPAN * STRIP_ROWS))
     found = _strongest_steps(profile, limit)
     bounds = [0, *found, profile.size]
     widest = int(np.argmax(np.diff(bounds)))
     struck = _refined_end(profile, bounds[widest]) if widest > 0 else -np.inf
-    held = _refined_end(profile, bounds[widest + 1]) if widest + 1 < len(bounds) - 1 else np.inf
+    held = _refined_end(profile, bounds[widest + 1]) if widest + 1 < len(bounds) - 1 else _ledge(rows)
     return struck, held
+
+
+def _ledge(rows: Floats) -> float:
+    """Column at which the surface steps to the top of a support that looks like the sample; infinite if it does not."""
+    off = rows - _straight(rows)
+    top = float(np.median(off[-_END_SPAN:]))
+    column = int(np.flatnonzero(np.abs(off - top) > _LEAST_LEDGE)[-1:].sum()) + 1
+    before = off[max(column - 2 * _END_SPAN, 0) : max(column - _END_SPAN, 1)]
+    if abs(top) < 1.5 * _LEAST_LEDGE or np.median(np.abs(before)) > 0.5 * abs(top):
+        return np.inf
+    return column - 0.5
+
+
+def _straight(rows: Floats) -> Floats:
+    """A straight line that a smaller part of the columns may be far away from: least absolute distances."""
+    columns, weights = np.arange(rows.size), np.ones(rows.size)
+    line: Floats = np.full(rows.size, np.median(rows))
+    for _ in range(_LINE_STEPS):
+        slope, row = np.polyfit(columns, rows, 1, w=np.sqrt(weights))
+        line = row + slope * columns
+        weights = 1.0 / np.maximum(np.abs(rows - line), 0.1)
+    return line
 
 
 def _strongest_steps(profile: Floats, limit: float) -> list[int]:
@@ -292,22 +323,29 @@ def _strip_depth(n_rows: int, line: tuple[float, float], n_columns: int, blur: f
     depth = max(4.0 * blur + 4.0, 0.25 * room)
     if room - depth < _FEWEST_ROWS:
         raise InputError(
-            f"the image ends {room:.0f} px below the undeformed surface",
+            f"the image ends {max(room, 0.0):.0f} px below the undeformed surface",
             key="region.rows",
             expected=f"at least {4.0 * blur + 4.0 + _FEWEST_ROWS:.0f} px of the sample's body",
-            cure="give more rows on the side of the sample",
+            cure="give more rows on the side of the sample, or check calibration.x_axis and y_axis",
         )
     return depth
 
 
 def _striker(appearance: Appearance, frames: Sequence[Image]) -> float | None:
-    """Likeness of what stands left of the sample and is neither background nor sample; None if nothing does."""
-    seen: list[float] = []
+    """Likeness of what stands left of the sample and is not background; None if nothing does.
+
+    What looks like the sample itself is believed to be a striker only where the sample never is.
+    """
+    unlike_both: list[float] = []
+    alike: list[float] = []
+    outside = int(max(appearance.struck_end - 2 * appearance.clearance - _END_SPAN, 0.0))
     for image in frames:
         body = appearance.body(np.ascontiguousarray(image, dtype=np.float32))
-        unlike = np.abs(body - 1.0) > _NOT_LIKE
+        unlike = np.abs(body - 1.0) > NOT_LIKE
         last = int(min(appearance.held_end, body.size) - appearance.clearance)
         beside = np.flatnonzero(unlike[:last])
         left = body[: max(beside[-1] - _END_SPAN, 0)] if beside.size else body[:0]
-        seen.extend(left[(np.abs(left) > _NOT_LIKE) & (np.abs(left - 1.0) > _NOT_LIKE)])
+        unlike_both.extend(left[(np.abs(left) > NOT_LIKE) & (np.abs(left - 1.0) > NOT_LIKE)])
+        alike.extend(body[:outside][~unlike[:outside]])
+    seen = max(unlike_both, alike, key=len)  # the blurred faces of a bright one are unlike both, and few
     return float(np.median(seen)) if len(seen) > 2 * _END_SPAN else None

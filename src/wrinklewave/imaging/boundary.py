@@ -3,7 +3,8 @@
 A strip deep in the body shows both roughly. Then both are fitted together, as straight faces across four strips close
 below the surface's corner, once with a gap between them and once without: a frame by itself does not always tell
 which is the case. Where the gap is wide, or the sample's corner has risen above the striker, the end is seen alone in
-these strips, and the striker in the deep one.
+these strips, and the striker in the deep one. A striker as bright as the sample hides the end while they touch: then
+both are found by the step between their upper edges, as long as one of them is higher.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from wrinklewave._jit import allocating
-from wrinklewave.imaging.appearance import STRIP_ROWS, Appearance
+from wrinklewave.imaging.appearance import NOT_LIKE, STRIP_ROWS, Appearance
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 from wrinklewave.imaging.faces import END, GAP, SLOPE, SPREAD, Faces, fit_faces, gap_of_square
 from wrinklewave.imaging.strips import Greys, strip_shares
@@ -24,7 +25,8 @@ _RUN = 3  # columns unlike the sample that end it
 _END_BLURS = 2.0  # left of the end, over which it passes through the striker's grey by itself
 _REACH = 4.0  # blurs that a step reaches to either side
 _LEVEL_COLUMNS = 14  # columns beyond, that tell the levels
-_NO_PLATE = 0.15  # shares of the contrast by which a plate differs from the background
+_LEDGE = 4.0  # rows by which the surface leaves the striker's top
+_LEAN = 0.02  # columns per row: how much a face may be inclined where that is not seen
 _STRAIGHT = 4.0  # blurs: of a wider gap it is seen whether the faces are parallel
 
 
@@ -103,6 +105,8 @@ def _find(image: Pixels, coarse: Floats, greys: Greys, strip_depth: float, view:
     body = strip_shares(image, top, STRIP_ROWS, greys)
     rough = _rough_end(body, view)
     if not np.isfinite(rough):
+        if abs(1.0 - view.striker) < NOT_LIKE:
+            _at_corner(image, coarse, body, greys, view, found)
         return found
     face = _rough_face(body, rough - _END_BLURS * view.blur, view.striker)
     in_sight = face > view.clearance
@@ -197,10 +201,77 @@ def _keep_gap(fit: Faces, found: Floats) -> None:
 
 
 @allocating
+def _at_corner(image: Pixels, coarse: Floats, body: Floats, greys: Greys, view: _View, found: Floats) -> None:
+    """End and striker where both look alike and hide what is between them, by the step between their upper edges.
+
+    Between the rows of the two edges there is the striker, or the sample, on one side and the background on the other.
+    A gap too narrow to be found in the body lets through as much background as it is wide.
+    """
+    reach = _REACH * view.blur
+    top = np.median(coarse[:_LEVEL_COLUMNS])
+    ledge = _first_run(np.abs(coarse - top) > _LEDGE)
+    beside = coarse[ledge + 2 : ledge + 2 + int(reach) + _LEVEL_COLUMNS]
+    first, last = _window(float(ledge), float(ledge), view.blur, image.shape[1])
+    if ledge < _LEVEL_COLUMNS or beside.size == 0 or last > view.last:
+        return
+    striker_is_higher = np.median(beside) > top
+    highest = (top if striker_is_higher else beside.max()) + 0.5 + 2.5 * view.blur
+    lowest = (beside.min() if striker_is_higher else top) - 0.5 - 2.5 * view.blur
+    n_rows = int(lowest) - int(np.ceil(highest)) + 1
+    if n_rows < 2:
+        return
+    noise = 1.0 / view.contrast_to_noise
+    tops = np.full(image.shape[1], np.ceil(highest))
+    strip = strip_shares(image, tops, n_rows, greys)[first:last].copy().reshape((1, last - first))
+    start = np.array([float(ledge), 0.0, 0.0, 0.0])
+    only_end = np.array([1.0, 0.0, 0.0, 0.0])
+    step = fit_faces(strip, first, np.zeros(1), start, False, only_end, view.blur, noise / np.sqrt(n_rows))
+    if not np.isfinite(step.at[END]):
+        return
+    gap, gap_sigma = _background_between(body, step.at[END], view.blur, noise / np.sqrt(STRIP_ROWS))
+    at, sigma = step.at[END], np.sqrt(step.covariance[END, END])
+    seen, other = sigma, np.sqrt(sigma**2 + gap_sigma**2)
+    width = max(gap, 0.0)
+    found[_APART], found[_APART + 1] = (at + width, other) if striker_is_higher else (at, seen)
+    found[_STRIKER], found[_STRIKER + 1] = (at, seen) if striker_is_higher else (at - width, other)
+    found[_GAP], found[_GAP + 1] = width, gap_sigma
+    found[_TOUCH], found[_TOUCH + 1] = at, seen
+    for slope in (_APART + 2, _TOUCH + 2):
+        found[slope], found[slope + 1] = 0.0, _LEAN
+    found[_GAIN] = (width / gap_sigma) ** 2
+    found[_ROW] = found[_STRIKER_ROW] = np.ceil(highest) + 0.5 * (n_rows - 1)
+    found[_CORNER_ROW] = beside[0]
+
+
+@allocating
+def _background_between(body: Floats, column: float, blur: float, sigma: float) -> tuple[float, float]:
+    """Width of a gap between two faces that look alike, by the background that it lets through, and its uncertainty."""
+    inner, outer = int(_REACH * blur) + 1, int(_REACH * blur) + 1 + _LEVEL_COLUMNS
+    c = int(np.rint(column))
+    beside = np.concatenate(
+        (body[max(c - outer, 0) : max(c - inner, 0)], body[c + inner + 1 : c + outer + 1])
+    )
+    middle = body[max(c - inner, 0) : c + inner + 1]
+    level = beside.mean()
+    return (level - middle).sum() / level, sigma * np.sqrt(middle.size * (1.0 + middle.size / beside.size))
+
+
+@allocating
+def _first_run(marked: Flags) -> int:
+    """Where the first ``_RUN`` marked elements in a row begin; 0 if there are none."""
+    length = 0
+    for c in range(marked.size):
+        length = length + 1 if marked[c] else 0
+        if length == _RUN:
+            return c + 1 - _RUN
+    return 0
+
+
+@allocating
 def _plate_beside(strip: Floats, first: int, face: float, blur: float) -> bool:
     """Whether there is a striker left of its face in a strip, not only deeper in the image."""
     stop = max(int(face - first - _REACH * blur), 1)
-    return abs(strip[max(stop - _LEVEL_COLUMNS, 0) : stop].mean()) > _NO_PLATE
+    return abs(strip[max(stop - _LEVEL_COLUMNS, 0) : stop].mean()) > NOT_LIKE
 
 
 @allocating
@@ -214,7 +285,7 @@ def _window(face: float, end: float, blur: float, n_columns: int) -> tuple[int, 
 def _rough_end(body: Floats, view: _View) -> float:
     """Column of the struck end to a pixel or two in the strip of the body; NaN if it is out of sight."""
     limit = 0.5
-    if np.isfinite(view.striker):
+    if abs(1.0 - view.striker) >= NOT_LIKE:
         limit = 0.5 * min(1.0, abs(1.0 - view.striker))
     return _last_run(~(np.abs(body[: view.last + 1] - 1.0) < limit))
 

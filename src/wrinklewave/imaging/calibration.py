@@ -69,7 +69,7 @@ def calibrate(experiment: Experiment, appearance: Appearance, struck_end: float)
             "the struck end of the sample is not seen in the undeformed frames",
             key="region.columns",
             expected="frames that show the struck end at rest",
-            cure="check calibration.x_axis, and give more columns",
+            cure="check calibration.x_axis and y_axis, and give more columns",
         )
     return PixelMap(
         pixel_size=_pixel_size(experiment, (struck_end, appearance.held_end), tilt),

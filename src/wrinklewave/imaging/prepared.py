@@ -31,6 +31,9 @@ class PreparedSource(FrameSource):
         times: seconds of every frame of the source; the source's own if None.
         bit_depth: significant bits, if fewer than the source's.
 
+    Attributes:
+        transposed: whether rows of the prepared frames are columns of the source.
+
     Raises:
         InputError: if the region or the frames leave the recording.
     """
@@ -53,13 +56,13 @@ class PreparedSource(FrameSource):
         self._columns = _range(columns, width, "region.columns", source)
         self._rows = _range(rows, height, "region.rows", source)
         self._frames = _range(frames, source.n_frames, "video.frames", source)
-        self._transposed = x_axis in ("up", "down")
+        self.transposed = x_axis in ("up", "down")
         self._flip_x = x_axis in ("left", "up")
         self._flip_y = y_axis in ("down", "right")
         self.path, self.description, self.notes = source.path, source.description, source.notes
         self.n_frames = len(self._frames)
         size = len(self._rows), len(self._columns)
-        self.shape = (size[1], size[0]) if self._transposed else size
+        self.shape = (size[1], size[0]) if self.transposed else size
         self.bit_depth = bit_depth or source.bit_depth
         self.black_level = source.black_level
         self.white_level = (1 << bit_depth) - 1 if bit_depth else source.white_level
@@ -80,7 +83,7 @@ class PreparedSource(FrameSource):
     def position(self, column_row: ArrayLike) -> NDArray[np.float64]:
         """Positions in the recording's image as positions in prepared frames; [..., 2] of column and row."""
         found = np.array(column_row, dtype=float) - (self._columns.start, self._rows.start)
-        if self._transposed:
+        if self.transposed:
             found = found[..., ::-1].copy()
         height, width = self.shape
         if self._flip_x:
@@ -98,7 +101,7 @@ class PreparedSource(FrameSource):
         except FrameError as error:
             raise FrameError(index, error.reason, source=self.path) from error
         image = whole[self._rows.start : self._rows.stop, self._columns.start : self._columns.stop]
-        if self._transposed:
+        if self.transposed:
             image = image.T
         turned = image[:: -1 if self._flip_y else 1, :: -1 if self._flip_x else 1]
         return turned.copy()
