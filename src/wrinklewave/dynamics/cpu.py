@@ -46,7 +46,7 @@ class Pace:
     def choose(self) -> Arrays:
         """The arrays, shared out to the number of threads that the next group should have."""
         self._tries += 1
-        fastest = int(np.argmin(self._seconds))  # one that was never tried is the fastest
+        fastest = self._seconds.index(min(self._seconds))  # one that was never tried is the fastest
         slower = (fastest + 1) % len(self._choices)
         self._current = slower if self._tries % self.RETRY == 0 else fastest
         return self._choices[self._current]
