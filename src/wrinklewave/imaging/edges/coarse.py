@@ -24,6 +24,7 @@ _1, _2, _3, _4, _8 = (uintp(k) for k in (1, 2, 3, 4, 8))
 _FAR = np.float32(1e30)  # costs beyond the image
 
 
+@allocating
 def coarse_edge(image: Pixels, sign: float) -> Floats:
     """Row of the edge in every column to about a pixel, shape [n_columns].
 

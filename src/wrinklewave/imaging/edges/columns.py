@@ -8,7 +8,7 @@ brighter side noisier).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,7 @@ _MISFIT = 0.06  # contrasts: what the model of the profile may miss, beyond nois
 _MISFIT_SIGMAS = 5.0  # of the residual's root mean square
 
 
-@dataclass(frozen=True)
-class Columns:
+class Columns(NamedTuple):
     """The edge column by column, shape [n_columns].
 
     Attributes:
@@ -37,16 +36,8 @@ class Columns:
     rows: Floats
     sigma: Floats
 
-    @property
-    def found(self) -> Flags:
-        """Where there is an edge."""
-        return np.isfinite(self.rows)
 
-    def only(self, kept: Flags) -> Columns:
-        """The same without the columns that are not ``kept``."""
-        return Columns(np.where(kept, self.rows, np.nan), np.where(kept, self.sigma, np.inf))
-
-
+@allocating
 def find_columns(
     image: Pixels, start: Floats, blur: Floats, levels: Levels, usable: Flags, tolerance: float
 ) -> Columns:
@@ -60,64 +51,23 @@ def find_columns(
         usable: columns to look at, shape [n_columns].
         tolerance: the last step taken is smaller [px].
     """
-    rows, sigma = _find(
-        image,
-        start,
-        levels.origin,
-        blur,
-        levels.value,
-        levels.gradient,
-        levels.noise,
-        levels.contrast,
-        levels.blocked,
-        usable,
-        tolerance,
-    )
-    return Columns(rows, sigma)
-
-
-@allocating
-def _find(
-    image: Pixels,
-    start: Floats,
-    origin: Floats,
-    blur: Floats,
-    value: Floats,
-    gradient: Floats,
-    noise: Floats,
-    contrast: float,
-    blocked: Flags,
-    usable: Flags,
-    tolerance: float,
-) -> tuple[Floats, Floats]:
-    """Rows and standard uncertainties without columns that have another shape, and what the blur mixes with them."""
-    rows, sigma, residual, count = _locate(
-        image, start, origin, blur, value, gradient, noise, usable, tolerance
-    )
-    mean_noise = np.sqrt(0.5 * (noise[0] ** 2 + noise[1] ** 2))
-    strange = blocked.copy()
+    rows, sigma, residual, count = _locate(image, start, blur, levels, usable, tolerance)
+    mean_noise = np.sqrt(np.mean(levels.noise**2))
+    strange = levels.blocked.copy()
     for c in range(rows.size):
         if count[c] > 0:
             expected = mean_noise * (1.0 + _MISFIT_SIGMAS / np.sqrt(2.0 * count[c]))
-            strange[c] = strange[c] or residual[c] > expected + _MISFIT * contrast
+            strange[c] = strange[c] or residual[c] > expected + _MISFIT * levels.contrast
     strange = with_neighbours(strange, blur)
     for c in range(rows.size):
         if strange[c]:
             rows[c], sigma[c] = np.nan, np.inf
-    return rows, sigma
+    return Columns(rows, sigma)
 
 
 @allocating
 def _locate(
-    image: Pixels,
-    start: Floats,
-    origin: Floats,
-    blur: Floats,
-    value: Floats,
-    gradient: Floats,
-    noise: Floats,
-    usable: Flags,
-    tolerance: float,
+    image: Pixels, start: Floats, blur: Floats, levels: Levels, usable: Flags, tolerance: float
 ) -> tuple[Floats, Floats, Floats, NDArray[np.int64]]:
     """Rows and standard uncertainties; root mean square of the residual grey values and number of pixels.
 
@@ -125,15 +75,16 @@ def _locate(
     """
     rows, sigma = np.full(start.size, np.nan), np.full(start.size, np.inf)
     residual = np.full(start.size, np.inf)
-    first, count = _windows(image.shape[0], start, blur, usable & np.isfinite(start + value[0] + value[1]))
+    known = usable & np.isfinite(start + levels.value[0] + levels.value[1])
+    first, count = _windows(image.shape[0], start, blur, known)
     at, left = start.copy(), np.flatnonzero(count)
     lanes = empty_lanes(count.max())
     for turn in range(_TURNS):
         n_left = 0
         for begin in range(0, left.size, LANES):
             columns = left[begin : begin + LANES]
-            _fill(lanes, image, columns, first, count, at, origin, blur, value, gradient)
-            take_two_steps(lanes, count[columns].max(), noise)
+            _fill(lanes, image, columns, first, count, at, blur, levels)
+            take_two_steps(lanes, count[columns].max(), levels.noise)
             for i in range(columns.size):
                 c = columns[i]
                 at[c] = first[c] + lanes.at[i]
@@ -179,16 +130,15 @@ def _fill(
     first: NDArray[np.int64],
     count: NDArray[np.int64],
     at: Floats,
-    origin: Floats,
     blur: Floats,
-    value: Floats,
-    gradient: Floats,
+    levels: Levels,
 ) -> None:
     """What is known of ``columns`` in the first lanes; the others keep what they had."""
+    value, gradient = levels.value, levels.gradient
     for i in range(columns.size):
         c = columns[i]
         lanes.depth[i], lanes.blur[i], lanes.at[i] = count[c], blur[c], at[c] - first[c]
-        depth = first[c] - origin[c]
+        depth = first[c] - levels.origin[c]
         dark, dark_slope = value[0, c] + gradient[0, c] * depth, gradient[0, c]
         lanes.dark[i], lanes.dark_slope[i] = dark, dark_slope
         lanes.height[i] = value[1, c] + gradient[1, c] * depth - dark

@@ -9,10 +9,11 @@ import numpy as np
 
 from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
+from wrinklewave.imaging.edges.banded import Band
 from wrinklewave.imaging.edges.coarse import coarse_edge
 from wrinklewave.imaging.edges.columns import Columns, find_columns
 from wrinklewave.imaging.edges.lateral import lateral_kernels, local_kernels, seen_exactly, seen_linearly
-from wrinklewave.imaging.edges.levels import Levels, find_levels
+from wrinklewave.imaging.edges.levels import Levels, find_levels, without
 from wrinklewave.imaging.edges.regularised import ORDER, band_limited_surface, penalty, uncertainty
 
 RESOLUTION = 10.0  # px
@@ -64,8 +65,7 @@ class Edge:
     noise: float
 
 
-@dataclass(frozen=True)
-class RoughEdge:
+class RoughEdge(NamedTuple):
     """The surface to a fraction of a pixel; arrays of shape [n_columns].
 
     Attributes:
@@ -95,9 +95,9 @@ class EdgeFinder:
     def __init__(self, optics: Optics, *, resolution: float = RESOLUTION) -> None:
         self.optics = optics
         self.resolution = max(resolution, _FINEST * float(np.hypot(optics.blur, 12**-0.5)))
-        self._kernels = lateral_kernels(optics.blur)
-        self._reach = self._kernels.shape[1] // 2
-        self._stiffness = penalty(self.resolution, optics.blur)
+        self._by = _Regularisation(
+            optics.blur, lateral_kernels(optics.blur), penalty(self.resolution, optics.blur)
+        )
 
     def find(self, image: Pixels, *, first: int = 0, stop: int | None = None) -> Edge:
         """The surface in the columns from ``first`` up to ``stop`` of an image [n_rows, n_columns]."""
@@ -110,89 +110,108 @@ class EdgeFinder:
 
     def rough(self, image: Pixels, coarse: Floats, *, first: int = 0, stop: int | None = None) -> RoughEdge:
         """The surface to a fraction of a pixel, by which it is known what stands before it."""
-        n_columns = image.shape[1]
-        stop = n_columns if stop is None else min(stop, n_columns)
-        slope = _slope(coarse, _COARSE_SPAN)
-        blur = _seen_blur(slope, self.optics.blur)
-        levels = find_levels(image, coarse, blur, max(first, 0), stop)
-        columns = find_columns(image, coarse, blur, levels, levels.usable, _ROUGHLY)
-        if columns.found.sum() < _FEWEST:
-            return RoughEdge(np.full(n_columns, np.nan), slope, np.zeros(n_columns), levels)
-        fit = self._fit(columns, slope, np.zeros(n_columns))
-        slope[fit.part] = _slope(fit.surface, 1)[self._reach : -self._reach]
-        linear = seen_linearly(fit.surface, local_kernels(slope[fit.part], self._kernels))
-        rows, beyond = np.full(n_columns, np.nan), np.zeros(n_columns)
-        rows[fit.part] = seen_exactly(fit.surface, linear, slope[fit.part], self.optics.blur)
-        beyond[fit.part] = rows[fit.part] - linear
-        return RoughEdge(rows, slope, beyond, levels)
+        stop = image.shape[1] if stop is None else min(stop, image.shape[1])
+        return _rough(image, coarse, max(first, 0), stop, self._by)
 
     def fine(self, image: Pixels, rough: RoughEdge, blocked: Flags | None = None) -> Edge:
         """The surface at both resolutions; ``blocked`` columns [n_columns] are hidden by something known."""
-        levels = rough.levels if blocked is None else rough.levels.without(blocked)
-        usable = levels.usable & np.isfinite(rough.rows)
-        blur = _seen_blur(rough.slope, self.optics.blur)
-        columns = find_columns(image, rough.rows, blur, levels, usable, _FINELY)
-        columns = columns.only(np.abs(columns.rows - rough.rows) <= _ASTRAY * columns.sigma + _ASTRAY_ROWS)
-        if columns.found.sum() < _FEWEST:
-            return _nothing(levels)
-        return self._edge(columns, rough.beyond, self._fit(columns, rough.slope, rough.beyond), levels)
+        blocked = np.zeros(rough.rows.size, np.bool_) if blocked is None else blocked
+        return Edge(*_fine(image, rough, blocked, self._by))
 
-    def _fit(self, columns: Columns, slope: Floats, beyond: Floats) -> _Fit:
-        """The surface through ``columns`` of a surface of about this ``slope``.
 
-        ``beyond`` is where columns see the surface, less what the linear lateral blur says.
-        """
-        found = np.flatnonzero(columns.found)
-        part = slice(int(found[0]), int(found[-1]) + 1)
-        level_sigma = _level_sigma(columns.sigma[found], slope[found], self.optics.blur)
-        local = local_kernels(slope[part], self._kernels)
-        surface, factor = band_limited_surface(
-            (columns.rows - beyond)[part],
-            columns.sigma[part],
-            level_sigma,
-            slope[part],
-            local,
-            self._stiffness,
-        )
-        return _Fit(part, surface, factor, level_sigma, seen_linearly(surface, local))
+class _Regularisation(NamedTuple):
+    """What columns are put together by: blur of the optics [px], table of lateral kernels, penalty."""
 
-    def _edge(self, columns: Columns, beyond: Floats, fit: _Fit, levels: Levels) -> Edge:
-        rows, sigma, shift = (np.full(columns.rows.size, value) for value in (np.nan, np.inf, np.nan))
-        inner = slice(self._reach, -self._reach)
-        rows[fit.part] = fit.surface[inner]
-        sigma[fit.part] = uncertainty(fit.factor, fit.level_sigma)[inner]
-        shift[fit.part] = fit.surface[inner] - fit.linear
-        known = np.where(columns.found, columns.sigma, 0.0)
-        return Edge(
-            rows=rows,
-            sigma=sigma,
-            valid=sigma < np.maximum(known, fit.level_sigma),
-            column_rows=columns.rows - beyond + shift,
-            column_sigma=columns.sigma,
-            column_valid=columns.found,
-            contrast=levels.contrast,
-            noise=levels.mean_noise,
-        )
+    blur: float
+    kernels: Floats
+    stiffness: float
 
 
 class _Fit(NamedTuple):
-    """A band-limited surface in the columns ``part``: with its margins, its factor, and as columns see it."""
+    """A band-limited surface in the columns from ``first`` to ``stop``, with ``reach`` more on both sides.
 
-    part: slice
+    Its factors, the uncertainty of a column in which it were level, and the surface as columns see it.
+    """
+
+    first: int
+    stop: int
+    reach: int
     surface: Floats
-    factor: Floats
+    factors: Band
     level_sigma: float
     linear: Floats
 
 
-def _nothing(levels: Levels) -> Edge:
-    n_columns = levels.usable.size
-    nowhere, unknown, never = (
+@allocating
+def _rough(image: Pixels, coarse: Floats, first: int, stop: int, by: _Regularisation) -> RoughEdge:
+    slope = _slope(coarse, _COARSE_SPAN)
+    blur = _seen_blur(slope, by.blur)
+    levels = find_levels(image, coarse, blur, first, stop)
+    columns = find_columns(image, coarse, blur, levels, levels.usable, _ROUGHLY)
+    rows, beyond = np.full(slope.size, np.nan), np.zeros(slope.size)
+    if np.isfinite(columns.rows).sum() >= _FEWEST:
+        fit = _fit(columns, slope, beyond, by)
+        part, reach = slice(fit.first, fit.stop), fit.reach
+        slope[part] = _slope(fit.surface, 1)[reach : fit.surface.size - reach]
+        linear = seen_linearly(fit.surface, local_kernels(slope[part], by.kernels))
+        rows[part] = seen_exactly(fit.surface, linear, slope[part], by.blur)
+        beyond[part] = rows[part] - linear
+    return RoughEdge(rows, slope, beyond, levels)
+
+
+@allocating
+def _fine(
+    image: Pixels, rough: RoughEdge, blocked: Flags, by: _Regularisation
+) -> tuple[Floats, Floats, Flags, Floats, Floats, Flags, float, float]:
+    """Fields of ``Edge``."""
+    levels = without(rough.levels, blocked) if blocked.any() else rough.levels
+    usable = levels.usable & np.isfinite(rough.rows)
+    columns = find_columns(image, rough.rows, _seen_blur(rough.slope, by.blur), levels, usable, _FINELY)
+    _drop_astray(columns, rough.rows)
+    n_columns, noise = usable.size, np.sqrt(np.mean(levels.noise**2))
+    rows, sigma, own_rows = (
         np.full(n_columns, np.nan),
         np.full(n_columns, np.inf),
-        np.zeros(n_columns, bool),
+        np.full(n_columns, np.nan),
     )
-    return Edge(nowhere, unknown, never, nowhere, unknown, never, levels.contrast, levels.mean_noise)
+    found = np.isfinite(columns.rows)
+    if found.sum() < _FEWEST:
+        nowhere = np.zeros(n_columns, np.bool_)
+        return rows, sigma, nowhere, own_rows, sigma, nowhere, levels.contrast, noise
+    fit = _fit(columns, rough.slope, rough.beyond, by)
+    part, inner = slice(fit.first, fit.stop), slice(fit.reach, fit.surface.size - fit.reach)
+    rows[part] = fit.surface[inner]
+    sigma[part] = uncertainty(fit.factors, fit.level_sigma)[inner]
+    own_rows[part] = (columns.rows - rough.beyond)[part] + fit.surface[inner] - fit.linear
+    valid = sigma < np.maximum(np.where(found, columns.sigma, 0.0), fit.level_sigma)
+    return rows, sigma, valid, own_rows, columns.sigma, found, levels.contrast, noise
+
+
+@allocating
+def _drop_astray(columns: Columns, rows: Floats) -> None:
+    """Forget columns that are too far from the surface through their neighbours."""
+    for c in range(rows.size):
+        if not abs(columns.rows[c] - rows[c]) <= _ASTRAY * columns.sigma[c] + _ASTRAY_ROWS:
+            columns.rows[c], columns.sigma[c] = np.nan, np.inf
+
+
+@allocating
+def _fit(columns: Columns, slope: Floats, beyond: Floats, by: _Regularisation) -> _Fit:
+    """The surface through ``columns`` of a surface of about this ``slope``.
+
+    ``beyond`` is where columns see the surface, less what the linear lateral blur says.
+    """
+    found = np.flatnonzero(np.isfinite(columns.rows))
+    first, stop = found[0], found[-1] + 1
+    part = slice(first, stop)
+    level_sigma = _level_sigma(columns.sigma[found], slope[found], by.blur)
+    local = local_kernels(slope[part], by.kernels)
+    surface, factors = band_limited_surface(
+        (columns.rows - beyond)[part], columns.sigma[part], level_sigma, slope[part], local, by.stiffness
+    )
+    return _Fit(
+        first, stop, local.shape[0] // 2, surface, factors, level_sigma, seen_linearly(surface, local)
+    )
 
 
 @allocating

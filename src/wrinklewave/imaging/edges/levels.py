@@ -9,7 +9,7 @@ moving it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -36,8 +36,7 @@ _N, _D, _DD, _GREY, _GREY_D, _VARIANCE = range(6)
 noise, from differences between neighbouring columns."""
 
 
-@dataclass(frozen=True)
-class Levels:
+class Levels(NamedTuple):
     """Grey values beside the edge.
 
     Attributes:
@@ -62,17 +61,13 @@ class Levels:
     blocked: Flags
     contrast: float
 
-    def without(self, hidden: Flags) -> Levels:
-        """The same from other columns only, and the ``hidden`` ones [n_columns] blocked."""
-        usable = self.usable & ~hidden
-        return _levels(self.origin, self.blur, self.bands, usable, self.blocked | (self.usable & hidden))
-
     @property
     def mean_noise(self) -> float:
         """Root mean square of both sides' noise."""
         return float(np.sqrt(np.mean(self.noise**2)))
 
 
+@allocating
 def find_levels(image: Pixels, rows: Floats, blur: Floats, first: int, stop: int) -> Levels:
     """Levels on both sides of an edge known to a pixel or two.
 
@@ -87,6 +82,14 @@ def find_levels(image: Pixels, rows: Floats, blur: Floats, first: int, stop: int
     return _levels(rows, blur, bands, usable, blocked)
 
 
+@allocating
+def without(levels: Levels, hidden: Flags) -> Levels:
+    """The same from other columns only, and the ``hidden`` ones [n_columns] blocked."""
+    usable, blocked = levels.usable & ~hidden, levels.blocked | (levels.usable & hidden)
+    return _levels(levels.origin, levels.blur, levels.bands, usable, blocked)
+
+
+@allocating
 def _levels(rows: Floats, blur: Floats, bands: Floats, usable: Flags, blocked: Flags) -> Levels:
     contrast, noise, value, gradient = _lines(bands, usable, blur)
     return Levels(rows, blur, bands, value, gradient, noise, usable, blocked, contrast)
