@@ -272,6 +272,9 @@ def test_what_cannot_be_measured_is_refused(filmed: Path, tmp_path: Path) -> Non
         InputError, match=r"calibration\.x_axis: in \d+% of the frames the struck end is seen at"
     ):
         measure(filmed / "impact.toml", overrides=["calibration.x_axis=left"])
+    few = ["video.frames=[10, 13]", "video.undeformed_frames=1"]
+    with pytest.raises(InputError, match=r"video\.frames: too few frames that can be used: 3"):
+        measure(filmed / "impact.toml", overrides=few, progress=not_so_far)
     for mistake, message in (
         ("contact.time=90 ms", "90 ms is not within"),
         ("calibration.pixel_size=5 mm", "cut-off"),
@@ -279,7 +282,6 @@ def test_what_cannot_be_measured_is_refused(filmed: Path, tmp_path: Path) -> Non
             "calibration.pixel_size=80 um",
             r"calibration: in the undeformed images the sample is 25\.59 mm long",
         ),
-        ("video.frames=[10, 13]", "too few frames"),
         ("video.undeformed_frames=20", r"in frame 13 the struck end has moved by \+4\.0 px"),
         ("wires={positions=[[200, 30]]}", r"no wire is seen within 10 px of \[200, 30\]"),
         ("wires={positions=[[140, 30], [142, 30]]}", r"\[140, 30\] and \[142, 30\] are the same wire"),
