@@ -9,10 +9,11 @@ table holds each measured quantity against the simulation's own, or against the 
 from __future__ import annotations
 
 import argparse
+import json
 import subprocess
 import sys
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -20,6 +21,7 @@ import xarray as xr
 import wrinklewave as ww
 from wrinklewave.config.recorded import recorded_analysis
 from wrinklewave.experiments.compare import compare
+from wrinklewave.experiments.impact_moments import EndTrack, find_moments
 
 CONTRAST_TO_NOISE, PIXELS_PER_MM = 20, 20
 
@@ -52,9 +54,10 @@ def main() -> int:
     step(experiment, "film", run, "--out", video, *camera)
     step(measured / "surface.nc", "measure", experiment, "--out", measured)
     tracks = np.genfromtxt(measured / "tracks.csv", delimiter=",", names=True)
-    lines = table_lines(
-        ww.read_surface(run), ww.read_surface(measured), xr.load_dataset(truth, engine="h5netcdf"), tracks
-    )
+    true = xr.load_dataset(truth, engine="h5netcdf")
+    summary = json.loads((measured / "summary.json").read_text(encoding="utf-8"))
+    lines = table_lines(ww.read_surface(run), ww.read_surface(measured), true, tracks)
+    lines += moment_lines(true, summary)
     text = as_markdown(lines, arguments.case)
     print(text)
     arguments.table.write_text(text, encoding="utf-8")
@@ -95,6 +98,44 @@ def table_lines(
         in_pixels("striker, all frames", tracks["x_striker_m"], striker, pixel),
         in_pixels("wires, all frames", measured["x_p"].values, wires, pixel),
     ]
+
+
+def moment_lines(truth: xr.Dataset, summary: dict[str, Any]) -> list[Line]:
+    """Moments of the impact against those of the true gap, continued to zero between frames in the same way."""
+    time = truth["time"].values - truth["time"].values[0]
+    end, striker = truth["boundary_column"].values, truth["striker_column"].values
+    nothing, touching = np.full(time.size, 1e-3), (end - striker < 1e-3).astype(float)
+    track = EndTrack(
+        time,
+        end,
+        nothing,
+        truth["boundary_row"].values,
+        striker,
+        nothing,
+        end - striker,
+        nothing,
+        touching,
+        end[0],
+    )
+    true = find_moments(track)
+    contact = summary["contact_on_recording_clock_s"]
+    lines = [in_microseconds("contact", true.contact.time, contact)]
+    for name, moment in (("separation", true.separation), ("recontact", true.recontact)):
+        lines.append(in_microseconds(name, moment.time, contact + summary[f"striker_{name}_time_s"]))
+    return lines
+
+
+def in_microseconds(moment: str, true: float, measured: float, allowed: float = 10.0) -> Line:
+    """A line for a moment on the recording's clock [s]; frames are 20 microseconds apart."""
+    error = 1e6 * (measured - true)
+    return Line(
+        f"moment of {moment} (µs)",
+        f"{1e6 * true:.1f}",
+        f"{1e6 * measured:.1f}",
+        f"{error:+.1f} µs",
+        f"{allowed:g} µs",
+        abs(error) <= allowed,
+    )
 
 
 def relative(quantity: str, true: float, measured: float, allowed: float) -> Line:
