@@ -110,6 +110,9 @@ class Solver(Section):
         Literal["double", "mixed"],
         Field(description="mixed: state and elements in single precision, edges and energies in double"),
     ] = "double"
+    subcycling: Annotated[
+        bool, Field(description="with a resolved film: steps of its own for every row of elements")
+    ] = True
 
 
 class Output(Section):

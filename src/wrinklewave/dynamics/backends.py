@@ -24,12 +24,14 @@ class March:
         start: time of the present positions [s].
         last_dt: the step that led to them (0 at the start) [s].
         dt: the step [s].
+        counts: how many steps each row of elements takes in one step, shape [n_rows], where they have their own.
     """
 
     n: int
     start: float
     last_dt: float
     dt: float
+    counts: NDArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

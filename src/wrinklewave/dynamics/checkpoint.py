@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     from wrinklewave.dynamics.simulation import Simulation
 
 STATE = ("u", "w", "vx", "vy", "factors")
-WHOLE = ("next_event", "step", "last_step", "patience")
-COUNTERS = (*WHOLE, "dt", "first_dt", "last_dt", "power_time", "stepping_seconds")
+WHOLE = ("next_event", "step", "updates", "last_step", "patience")
+COUNTERS = (*WHOLE, "dt", "first_dt", "last_dt", "largest_dt", "power_time", "stepping_seconds")
 START_AGAIN = "start again: wrinklewave simulate CASE --overwrite"
-SUMS = ("totals", "work", "power")
+SUMS = ("counts", "totals", "work", "power")
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +45,9 @@ def write_checkpoint(path: Path, simulation: Simulation, record: Record, case_te
         for name in STATE:
             file[f"state/{name}"] = getattr(simulation.model.arrays, name)
         file["state/memory"] = simulation.model.memory
+        if simulation.model.row_steps is not None:
+            for name, values in simulation.model.row_steps._asdict().items():
+                file[f"row_steps/{name}"] = values
         file["history"] = np.array(simulation.history, dtype=float)
         for name, values in record.arrays.items():
             file[f"record/{name}"] = values
@@ -84,5 +87,8 @@ def _restore(file: h5py.File, simulation: Simulation) -> Record:
     for name in STATE:
         getattr(simulation.model.arrays, name)[:] = file[f"state/{name}"][()]
     simulation.model.memory[:] = file["state/memory"][()]
+    if simulation.model.row_steps is not None:
+        for name, values in simulation.model.row_steps._asdict().items():
+            values[:] = file[f"row_steps/{name}"][()]
     simulation.history = [tuple(row) for row in file["history"][()]]
     return Record({name: values[()] for name, values in file["record"].items()})

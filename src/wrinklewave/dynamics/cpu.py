@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.dynamics.backends import Sample, Snapshot
+from wrinklewave.dynamics import row_steps
+from wrinklewave.dynamics.backends import March, Sample, Snapshot
 from wrinklewave.dynamics.boundary import N_TOTALS
 from wrinklewave.dynamics.energy import KINETIC, N_COLUMNS, N_SUMS, survey_share
 from wrinklewave.dynamics.fields import FIELDS, fields_share, set_aside
+from wrinklewave.dynamics.row_steps import Plan
 from wrinklewave.dynamics.stable_step import stable_steps_share
 from wrinklewave.dynamics.step import advance
 from wrinklewave.dynamics.team import share_out
@@ -71,6 +73,12 @@ class _Slot:
         return cls(nodal, np.empty_like(model.memory), np.empty_like(model.arrays.factors))
 
 
+def _with_mean_velocities(model: Model) -> Arrays:
+    """The arrays with what outputs see: where rows have steps of their own, velocities are means of a large step."""
+    steps = model.row_steps
+    return model.arrays if steps is None else model.arrays._replace(vx=steps.vx, vy=steps.vy)
+
+
 class Cpu:
     """A :class:`~wrinklewave.dynamics.backends.Backend` on one or more threads; results do not depend on how many."""
 
@@ -83,28 +91,38 @@ class Cpu:
         self._survey = np.zeros((rows + 1, N_SUMS))
         self._work = np.zeros((parts, N_COLUMNS, columns))
         self._alone = model.arrays._replace(shares=np.array([0, rows]))
+        self._mean = _with_mean_velocities(model)
         self._pace = Pace([model.arrays, self._alone] if parts > 1 else [model.arrays])
         self._slots: list[_Slot] = []  # that no snapshot holds
         self._compiled = False
 
     def march(self, wanted: March) -> Sample:
         """Step, and survey the state."""
-        m, a, dt = self._model, self._model.arrays, wanted.dt
-        self._compile()
+        self._compile(wanted.counts)
         shared, totals = self._pace.choose(), np.zeros(N_TOTALS)
         begin = time.perf_counter()
-        advance(wanted.n, wanted.start, wanted.last_dt, dt, shared, self._memory, m.terms, m.boundary, totals)
+        self._advance(wanted, shared, totals)
         seconds = time.perf_counter() - begin
         self._pace.note(seconds / wanted.n)
-        share_out(survey_share, self._parts, dt, a, self._memory, m.terms, self._work, self._survey)
+        a = self._mean if wanted.counts is None else row_steps.seen_over(wanted.dt, self._mean)
+        terms = self._model.terms
+        share_out(survey_share, self._parts, wanted.dt, a, self._memory, terms, self._work, self._survey)
         kinetic, corner = float(self._survey[:, KINETIC].sum()), (a.u[-1, 0], a.w[-1, 0])
         return Sample(seconds, self._survey[:-1, :N_COLUMNS], kinetic, totals, corner)
 
-    def _compile(self) -> None:
+    def _advance(self, wanted: March, shared: Arrays, totals: NDArray[np.float64]) -> None:
+        m, t = self._model, wanted.start
+        state = (self._memory, m.terms, m.boundary, totals)
+        if wanted.counts is None or m.row_steps is None:
+            advance(wanted.n, t, wanted.last_dt, wanted.dt, shared, *state)
+            return
+        shared = shared._replace(shares=row_steps.shares_of(wanted.counts, shared.shares.size - 1))
+        row_steps.advance(wanted.n, t, Plan(wanted.dt, wanted.counts), m.row_steps, shared, *state)
+
+    def _compile(self, counts: NDArray[np.int64] | None) -> None:
         """Take no step once, so that the time of the first steps is not that of the compiler."""
         if not self._compiled:
-            m = self._model
-            advance(0, 0.0, 0.0, 1.0, m.arrays, self._memory, m.terms, m.boundary, np.zeros(N_TOTALS))
+            self._advance(March(0, 0.0, 0.0, 1.0, counts), self._model.arrays, np.zeros(N_TOTALS))
             self._compiled = True
 
     def least_stable_step(self) -> float:
@@ -118,13 +136,13 @@ class Cpu:
 
     def snapshot(self) -> Callable[[], Snapshot]:
         """Copy the state; its fields can be computed while the next steps are taken."""
-        a, slot = self._alone, self._slots.pop() if self._slots else _Slot.of(self._model)
+        a, slot = self._mean, self._slots.pop() if self._slots else _Slot.of(self._model)
         set_aside(a.u, a.w, a.vx, a.vy, self._model.memory, slot.nodal, slot.memory)
         slot.factors[:] = a.factors
 
         def fields() -> Snapshot:
             u, w, vx, vy = slot.nodal
-            then = a._replace(u=u, w=w, vx=vx, vy=vy, factors=slot.factors)
+            then = self._alone._replace(u=u, w=w, vx=vx, vy=vy, factors=slot.factors)
             out = np.empty((len(FIELDS), *self._model.mesh.shape))
             fields_share(0, then, tuple(slot.memory), self._model.terms, out)
             found = Snapshot(slot.nodal.copy(), out)

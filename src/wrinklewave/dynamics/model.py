@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,7 @@ from wrinklewave.dynamics.boundary import (
     Boundary,
 )
 from wrinklewave.dynamics.points import MEAN_DILATATION_COMPONENTS, ONE_POINT_COMPONENTS
+from wrinklewave.dynamics.row_steps import RowSteps, with_layers_of_rows
 from wrinklewave.dynamics.step import Arrays
 from wrinklewave.errors import InputError
 from wrinklewave.materials.moduli import plane_wave_modulus, substrate_moduli
@@ -56,6 +57,8 @@ class Model:
         terms: one entry per Prony term.
         boundary: conditions at the edges.
         density: of each layer, mass scaling included [kg/m³].
+        row_steps: of a model whose rows have steps of their own, and each row layers of its own in ``arrays`` and
+            ``density``; else None.
     """
 
     mesh: GridMesh
@@ -65,6 +68,7 @@ class Model:
     terms: tuple[float, ...]
     boundary: Boundary
     density: NDArray[np.float64]
+    row_steps: RowSteps | None = None
 
     @property
     def memory_rows(self) -> tuple[NDArray[np.float64], ...]:
@@ -90,7 +94,7 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
         bins=np.zeros((3, 2, mesh.X.shape[1]), dtype=np.int64),
         slipping=int((mesh.Y[:, -1] > mesh.Y[-1, -1] - case.boundaries.slip).sum()),
     )
-    return assemble(
+    model = assemble(
         mesh,
         materials,
         boundary,
@@ -101,6 +105,15 @@ def build_model(case: Case, *, threads: int = 1) -> Model:
         threads=threads,
         precision=case.solver.precision,
     )
+    can_subcycle = len(materials) > 1 and left != LEFT_STRAIGHT
+    return subcycled(model) if can_subcycle and case.solver.subcycling else model
+
+
+def subcycled(model: Model) -> Model:
+    """A model at rest whose rows of elements have steps of their own; a straight left end would need one for all."""
+    a = with_layers_of_rows(model.arrays)
+    density = np.tile(model.density, model.mesh.shape[0])
+    return replace(model, arrays=a, density=density, row_steps=RowSteps.at_rest(a))
 
 
 def layers(case: Case) -> tuple[GridMesh, list[Viscoelastic]]:

@@ -19,6 +19,7 @@ from wrinklewave.dynamics.energy import (
     SPRINGS,
     STORED,
 )
+from wrinklewave.dynamics.row_steps import plan
 from wrinklewave.errors import RunError
 from wrinklewave.materials.neo_hookean import J_MAX, J_MIN
 
@@ -86,9 +87,11 @@ class Simulation:
     device: Device = "cpu"
     next_event: int = 0
     step: int = 0
+    updates: int = 0
     dt: float = 0.0
     first_dt: float = 0.0
     last_dt: float = 0.0
+    largest_dt: float = 0.0
     last_step: int = 0
     patience: int = FEWEST_STEPS
     reached: float = 0.0
@@ -100,6 +103,7 @@ class Simulation:
     stepping_seconds: float = 0.0
 
     def __post_init__(self) -> None:
+        self.counts = np.ones(self.model.mesh.shape[0], dtype=np.int64)
         self.backend: Backend = backend_for(self.device, self.model)
         self._most_work, self._rows_seen = 0.0, 0  # largest external work in so many rows of the history
 
@@ -111,9 +115,17 @@ class Simulation:
     @property
     def updates_per_second(self) -> float:
         """Element updates per second of the stepping loop so far."""
-        return (
-            self.step * self.model.mesh.n_elements / self.stepping_seconds if self.stepping_seconds else 0.0
-        )
+        return self.updates / self.stepping_seconds if self.stepping_seconds else 0.0
+
+    @property
+    def ratio(self) -> int:
+        """Steps of the fastest row of elements in one step of the slowest."""
+        return int(self.counts[-1])
+
+    @property
+    def subcycles(self) -> bool:
+        """Whether rows of elements have steps of their own; a GPU takes one step for all."""
+        return self.model.row_steps is not None and self.device == "cpu"
 
     @property
     def imbalance(self) -> float:
@@ -160,7 +172,9 @@ class Simulation:
         Raises:
             RunError: as :meth:`run`.
         """
-        dt = self.backend.least_stable_step()
+        return self._checked(self.backend.least_stable_step())
+
+    def _checked(self, dt: float) -> float:
         self.first_dt = self.first_dt or dt
         if not dt > SMALLEST_STEP * self.first_dt:
             raise self._failure()
@@ -169,24 +183,31 @@ class Simulation:
     def _go(self, start: float, stop: float) -> Generator[March, Sample, None]:
         t = start
         while t < stop:
-            if not self.last_dt or self.step + self._steps_in(stop - t) > self.last_step + self.patience:
+            if not self.last_dt or self.step + self._steps_in(stop - t) > self.last_step + self._trusted:
                 self._estimate_stable_step()
             n = self._steps_in(stop - t)
-            dt, count = float(stop - t) / n, min(n, self.patience)
+            dt, count = float(stop - t) / n, min(n, self._trusted)
             yield from self._march(count, t, dt)
             t = stop if count == n else t + count * dt
 
     def _steps_in(self, interval: float) -> int:
         """Steps that fill a time [s], each safely below the last estimate."""
-        return int(np.ceil(interval / (self.safety * self.last_dt)))
+        return int(np.ceil(interval / (self.safety * self.largest_dt)))
+
+    @property
+    def _trusted(self) -> int:
+        """Steps for which an estimate holds: patience counts those of the fastest row."""
+        return max(1, self.patience // self.ratio)
 
     def _march(self, n: int, start: float, dt: float) -> Generator[March, Sample, None]:
         """Steps in groups, with a row of the history after each."""
+        counts = self.counts if self.subcycles else None
         group = max(1, int((1 + ROUNDING) * self.history_interval / dt))
         for done in range(0, n, group):
             count = min(group, n - done)
-            sample = yield March(count, start + done * dt, self.dt, dt)
+            sample = yield March(count, start + done * dt, self.dt, dt, counts)
             self.step += count
+            self.updates += count * int(self.counts.sum()) * self.model.mesh.shape[1]
             self.stepping_seconds += sample.seconds
             self.dt = dt
             self.reached = start + (done + count) * dt
@@ -196,11 +217,19 @@ class Simulation:
 
     def _estimate_stable_step(self) -> None:
         """Ask for the stable step; how fast it shrinks tells how many steps later it is to be asked for again."""
-        dt, taken = self.stable_step(), self.step - self.last_step
+        rows = self._stable_steps_of_rows()
+        dt, taken = self._checked(float(rows.min())), (self.step - self.last_step) * self.ratio
         shrunk = max(1 - dt / (self.last_dt or dt), 1e-9)
         allowed = min(taken * SHRINKAGE / shrunk, MOST_STEPS) if taken else FEWEST_STEPS
         self.patience = max(1, int(min(allowed, max(self.patience, 2 * taken))))
         self.last_dt, self.last_step = dt, self.step
+        self.largest_dt, self.counts = plan(rows)
+
+    def _stable_steps_of_rows(self) -> NDArray[np.float64]:
+        """Largest stable step of each row of elements [s], or that of all for each."""
+        if self.subcycles:
+            return self.backend.stable_steps().min(axis=1)
+        return np.full(self.model.mesh.shape[0], self.backend.least_stable_step())
 
     def _record(self, t: float, dt: float, sample: Sample) -> None:
         a, rows = self.model.arrays, sample.survey
