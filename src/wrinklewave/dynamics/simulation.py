@@ -210,6 +210,8 @@ class Simulation:
             self.updates += count * int(self.counts.sum()) * self.model.mesh.shape[1]
             self.stepping_seconds += sample.seconds
             self.dt = dt
+            if self.model.row_steps is not None and not self.subcycles:
+                self.model.row_steps.last[:] = dt
             self.reached = start + (done + count) * dt
             self.totals[FORCE] = 0.0
             self.totals += sample.totals

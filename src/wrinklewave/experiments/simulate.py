@@ -338,6 +338,7 @@ def run_summary(run: Run, simulation: Simulation, threads: int, seconds: float) 
         | {
             "elements": rows * columns,
             "steps": simulation.step,
+            "steps_of_fastest_row": simulation.ratio,
             "simulated_time_s": simulation.time,
             "device": simulation.device,
             "threads": threads,
