@@ -30,6 +30,11 @@ USES = (
     ),
     Use("Hughes1980", "mean-dilatation elements", lambda case: case.mesh.element == "mean-dilatation"),
     Use("VonNeumann1950", "bulk viscosity", lambda case: any(case.solver.bulk_viscosity)),
+    Use(
+        "Lew2003",
+        "steps of their own for rows of elements",
+        lambda case: case.wrinkles.model == "resolved" and case.solver.subcycling,
+    ),
     Use("Brau2011", "quasi-static wrinkling", lambda case: case.wrinkles.model == "quasi-static"),
     Use(
         "Huang2005",
