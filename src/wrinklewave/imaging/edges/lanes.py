@@ -1,7 +1,7 @@
 """Columns side by side: two steps towards the edge of each, in vector instructions.
 
 Single precision is enough, because rows are counted from the first pixel looked at: with the approximations of
-``normal_distribution`` it moves an edge by less than 1e-5 px.
+``normal_distribution`` it moves an edge by less than 1e-4 px.
 """
 
 from __future__ import annotations
