@@ -18,6 +18,7 @@ BLUR, NOISE, END_AT, LEAN = (
 ROWS = np.array([-24.0, -8.0, 8.0, 24.0])
 PLATE = 0.55
 WITH_GAP, ALL = np.array([1.0, 1.0, 1.0, 0.0]), np.ones(4)
+WITHOUT_GAP = np.array([1.0, 1.0, 0.0, 0.0])
 
 
 def strips(
@@ -29,9 +30,9 @@ def strips(
     return plate * (1.0 - at_face) + blurred_step(columns - end, BLUR) + random.normal(0.0, NOISE, (4, 64))
 
 
-def fitted(profiles: np.ndarray, gap: float, *, apart: bool = True, free: np.ndarray = WITH_GAP) -> Faces:
+def fitted(profiles: np.ndarray, gap: float, *, free: np.ndarray = WITH_GAP) -> Faces:
     start = np.array([END_AT + 0.6, 0.0, gap + 1.0, 0.0])
-    return fit_faces(profiles, 0, ROWS, start, apart, free, BLUR, NOISE)
+    return fit_faces(profiles, 0, ROWS, start, free, BLUR, NOISE)
 
 
 def gap_squared(fit: Faces) -> tuple[float, float]:
@@ -64,14 +65,14 @@ def test_of_a_gap_narrower_than_the_blur_the_square_is_known_and_a_single_step_i
     squares = np.array([gap_squared(fitted(each, 0.4)) for each in profiles])
     assert abs(squares[:, 0].mean() - 0.16) < 0.02
     assert np.std(squares[:, 0]) < np.median(squares[:, 1]) < 0.12
-    single = np.mean([fitted(each, 0.4, apart=False).at[END] for each in profiles]) - END_AT
+    single = np.mean([fitted(each, 0.4, free=WITHOUT_GAP).at[END] for each in profiles]) - END_AT
     assert single == pytest.approx(0.4 * PLATE / (1.0 - PLATE), abs=0.06)
 
 
 def test_where_there_is_no_gap_one_step_explains_as_much_as_two() -> None:
     random = np.random.default_rng(6)
     closed = [strips(0.0, random) for _ in range(60)]
-    single = [fitted(each, 0.0, apart=False) for each in closed]
+    single = [fitted(each, 0.0, free=WITHOUT_GAP) for each in closed]
     assert np.std([fit.at[END] for fit in single]) < 0.04
     assert abs(np.mean([fit.at[END] for fit in single]) - END_AT) < 4.0 * 0.03 / np.sqrt(60)
     gain = [one.misfit - fitted(each, 0.0).misfit for one, each in zip(single, closed, strict=True)]

@@ -235,7 +235,7 @@ def _refined_end(profile: Floats, column: int) -> float:
     first, last = max(column - 3 * _END_SPAN, 0), min(column + 3 * _END_SPAN, profile.size)
     window = profile[first:last]
     start, only_end = np.array([column - 0.5, 0.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0, 0.0])
-    fit = fit_faces(window[None, :], first, np.zeros(1), start, False, only_end, _FIRST_BLUR, 1.0)
+    fit = fit_faces(window[None, :], first, np.zeros(1), start, only_end, _FIRST_BLUR, 1.0)
     return float(fit.at[END]) if np.isfinite(fit.at[END]) else column - 0.5
 
 

@@ -135,7 +135,7 @@ def _find(image: Pixels, coarse: Floats, greys: Greys, strip_depth: float, view:
     if in_sight and not narrow:
         alone = max(alone, int(face + reach))
     strips = np.ascontiguousarray(strips[:, alone - first :])
-    _keep(fit_faces(strips, alone, rows, start, False, _LINE, view.blur, sigma), _APART, found)
+    _keep(fit_faces(strips, alone, rows, start, _LINE.copy(), view.blur, sigma), _APART, found)
     found[_TOUCH : _TOUCH + 4] = found[_APART : _APART + 4]
     return found
 
@@ -160,18 +160,19 @@ def _both(
 ) -> None:
     """End and striker with a gap and without, into the fields of ``StruckEnd``."""
     free = np.ones(4)
-    free[SPREAD] = 0.0
+    free[GAP], free[SPREAD] = 0.0, 0.0
     free[SLOPE] = 1.0 if rows.size > 1 else 0.0
     without = np.inf
     if start[GAP] < 2.0 * _REACH * blur:
-        touch = fit_faces(strips, first, rows, start, False, free, blur, sigma)
+        touch = fit_faces(strips, first, rows, start, free, blur, sigma)
         if np.isfinite(touch.at[END]):
             _keep(touch, _TOUCH, found)
             without = touch.misfit
-    apart = fit_faces(strips, first, rows, start, True, free, blur, sigma)
+    free[GAP] = 1.0
+    apart = fit_faces(strips, first, rows, start, free, blur, sigma)
     if rows.size > 1 and apart.at[GAP] > _STRAIGHT * blur:
         free[SPREAD] = 1.0
-        apart = fit_faces(strips, first, rows, apart.at, True, free, blur, sigma)
+        apart = fit_faces(strips, first, rows, apart.at, free, blur, sigma)
     if np.isfinite(apart.at[END]):
         _keep_gap(apart, found)
         found[_GAIN] = without - apart.misfit
@@ -225,7 +226,7 @@ def _at_corner(image: Pixels, coarse: Floats, body: Floats, greys: Greys, view: 
     strip = strip_shares(image, tops, n_rows, greys)[first:last].copy().reshape((1, last - first))
     start = np.array([float(ledge), 0.0, 0.0, 0.0])
     only_end = np.array([1.0, 0.0, 0.0, 0.0])
-    step = fit_faces(strip, first, np.zeros(1), start, False, only_end, view.blur, noise / np.sqrt(n_rows))
+    step = fit_faces(strip, first, np.zeros(1), start, only_end, view.blur, noise / np.sqrt(n_rows))
     if not np.isfinite(step.at[END]):
         return
     gap, gap_sigma = _background_between(body, step.at[END], view.blur, noise / np.sqrt(STRIP_ROWS))

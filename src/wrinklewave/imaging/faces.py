@@ -66,7 +66,6 @@ def fit_faces(
     first: int,
     rows: Floats,
     start: Floats,
-    apart: bool,
     free: Floats,
     blur: float,
     sigma: float,
@@ -78,11 +77,12 @@ def fit_faces(
         first: column of the first of them.
         rows: of the strips, counted from the row for which END and GAP are given, shape [n_strips].
         start: END, SLOPE, GAP, SPREAD to begin with.
-        apart: whether there is a gap; without it there is one step, from whatever is on the left to the sample.
-        free: 1 for the parameters that are fitted, 0 for the others, shape [4].
+        free: 1 for the parameters that are fitted, 0 for the others, shape [4]. Without GAP there is one step, from
+            whatever is on the left to the sample.
         blur: standard deviation of the optical blur [px].
         sigma: standard deviation of the noise of a column.
     """
+    apart = free[GAP] > 0.0
     least = _LEAST_GAP * blur if apart else 0.0
     at, ready = np.zeros(_N), False
     at[:4] = start
