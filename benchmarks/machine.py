@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from wrinklewave._jit import vector
+from wrinklewave._jit import uintp, vector
 from wrinklewave.environment import gpus, processor, versions
 
 REPOSITORY = Path(__file__).parents[1]
@@ -62,12 +62,14 @@ CHAIN = 32
 
 @vector
 def _multiply_add(x, a, b, times):
+    half = uintp(x.size // 2)  # two chains side by side: one alone does not keep all units of the processor busy
     for _ in range(times):
-        for i in range(x.size):
-            y = x[i]
+        for i in range(half):
+            y, z = x[i], x[i + half]
             for _ in range(CHAIN):
                 y = y * a + b
-            x[i] = y
+                z = z * a + b
+            x[i], x[i + half] = y, z
 
 
 def arithmetic_rate(threads: int) -> float:
