@@ -62,7 +62,8 @@ CHAIN = 32
 
 @vector
 def _multiply_add(x, a, b, times):
-    half = uintp(x.size // 2)  # two chains side by side: one alone does not keep all units of the processor busy
+    # two chains side by side: one alone does not keep all units of the processor busy
+    half = uintp(x.size // 2)
     for _ in range(times):
         for i in range(half):
             y, z = x[i], x[i + half]
