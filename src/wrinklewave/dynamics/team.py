@@ -19,8 +19,8 @@ _WHOLE_TEAM = Lock()
 
 
 @cache
-def _helpers() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(MOST_HELPERS, thread_name_prefix="wrinklewave")
+def _helpers(count: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(count, thread_name_prefix="wrinklewave")
 
 
 def share_out(kernel: Callable[..., Any], n_parts: int, *arguments: Any) -> None:
@@ -35,7 +35,7 @@ def share_out(kernel: Callable[..., Any], n_parts: int, *arguments: Any) -> None
     if n_parts - 1 > MOST_HELPERS:
         raise ValueError(f"{n_parts} parts for {MOST_HELPERS + 1} threads")
     with _WHOLE_TEAM:
-        others = [_helpers().submit(kernel, part, *arguments) for part in range(1, n_parts)]
+        others = [_helpers(MOST_HELPERS).submit(kernel, part, *arguments) for part in range(1, n_parts)]
         kernel(0, *arguments)
         for other in others:
             other.result()
