@@ -123,7 +123,7 @@ def test_a_failure_in_a_share_lets_nobody_wait(monkeypatch):
     def fail(*_):
         raise RuntimeError("no memory")
 
-    monkeypatch.setattr(row_steps, "share_out", fail)
+    monkeypatch.setattr(step, "share_out", fail)
     plan_of_one = Plan(1e-8, np.ones(model.mesh.shape[0], dtype=np.int64))
     rest = (model.arrays, model.memory_rows, model.terms, model.boundary, np.zeros(N_TOTALS))
     with pytest.raises(RuntimeError, match="no memory"):

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from wrinklewave.dynamics.backends import March
     from wrinklewave.dynamics.model import Model
     from wrinklewave.dynamics.step import Arrays
 

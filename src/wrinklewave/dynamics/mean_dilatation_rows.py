@@ -15,14 +15,13 @@ from wrinklewave.dynamics.elements.quadrilateral import (
     twice_area_rate,
 )
 from wrinklewave.dynamics.points import corners_x, corners_y
+from wrinklewave.dynamics.rows import relaxed
 from wrinklewave.materials.neo_hookean import (
     first_piola_kirchhoff,
     inverse_cube_root,
     isochoric_shape,
     right_cauchy_green,
 )
-from wrinklewave.materials.prony import memory as next_memory
-from wrinklewave.materials.prony import overstress
 
 ONE = uintp(1)
 
@@ -43,18 +42,10 @@ def _point(g, xi, eta, x, y, u, w, r, i, memory, terms, factors, mu):
     A11, A22, A12, A33 = mu * s11, mu * s22, mu * s12, mu * s33
     for m in range(len(terms)):
         b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
-        H = overstress(memory[stride * m + 4 * g][r, i], b, s11)
-        A11 += H
-        memory[stride * m + 4 * g][r, i] = next_memory(H, a, b_next, s11)
-        H = overstress(memory[stride * m + 4 * g + 1][r, i], b, s22)
-        A22 += H
-        memory[stride * m + 4 * g + 1][r, i] = next_memory(H, a, b_next, s22)
-        H = overstress(memory[stride * m + 4 * g + 2][r, i], b, s12)
-        A12 += H
-        memory[stride * m + 4 * g + 2][r, i] = next_memory(H, a, b_next, s12)
-        H = overstress(memory[stride * m + 4 * g + 3][r, i], b, s33)
-        A33 += H
-        memory[stride * m + 4 * g + 3][r, i] = next_memory(H, a, b_next, s33)
+        A11 += relaxed(memory[stride * m + 4 * g], r, i, b, a, b_next, s11)
+        A22 += relaxed(memory[stride * m + 4 * g + 1], r, i, b, a, b_next, s22)
+        A12 += relaxed(memory[stride * m + 4 * g + 2], r, i, b, a, b_next, s12)
+        A33 += relaxed(memory[stride * m + 4 * g + 3], r, i, b, a, b_next, s33)
     P11, P12, P21, P22 = first_piola_kirchhoff(
         F11, F12, F21, F22, A11, A22, A12, A33, C11, C22, C12, D * J23, Ji, 0.0
     )
@@ -92,9 +83,7 @@ def mean_dilatation_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, mo
     p = K * e + bulk_viscosity(rate, squared_length(X13, Y13, X24, Y24, A), linear, quadratic)
     if bulk_relaxes:
         for m in range(len(terms)):
-            H = overstress(memory[stride * m + 16][r, i], factors[m, 3], e)
-            p += H
-            memory[stride * m + 16][r, i] = next_memory(H, factors[m, 1], factors[m, 4], e)
+            p += relaxed(memory[stride * m + 16], r, i, factors[m, 3], factors[m, 1], factors[m, 4], e)
     fx1, fy1, fx2, fy2 = 0.5 * p * y24, -0.5 * p * x24, -0.5 * p * y13, 0.5 * p * x13
     fx3, fy3, fx4, fy4 = -fx1, -fy1, -fx2, -fy2
 

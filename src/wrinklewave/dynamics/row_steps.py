@@ -16,14 +16,11 @@ from typing import NamedTuple
 import numpy as np
 
 from wrinklewave._jit import serial, strict
-from wrinklewave.dynamics.barrier import ABANDONED, LINE, store, wait_for
+from wrinklewave.dynamics.barrier import LINE, store, wait_for
 from wrinklewave.dynamics.boundary import (
-    FORCE,
-    N_TOTALS,
     Boundary,
     Nodes,
     hold_rows,
-    n_edge_nodes,
     remember_rows,
 )
 from wrinklewave.dynamics.step import (
@@ -34,9 +31,9 @@ from wrinklewave.dynamics.step import (
     element_row,
     move_row,
     separate,
+    share_out_steps,
     update_factors,
 )
-from wrinklewave.dynamics.team import share_out
 
 SCALED = 2
 """Buffer of forces that come from a row with another step; 0 and 1 take turns."""
@@ -217,7 +214,7 @@ def _hold_share(start, stop, t, tick, dt, period, nodes, boundary, totals):
 
 
 @serial
-def march(part, n_steps, t, dt, period, last, a, memory, terms, boundary, totals, mean_vx, mean_vy):
+def march(part, n_steps, t, dt, period, last, a, memory, terms, boundary, mean_vx, mean_vy, totals):
     """Take all steps of one share. ``dt`` is the smallest; row j of elements is due every ``period[j]`` of them."""
     n_rows, most = period.size, period[0]
     first, stop = a.shares[part], a.shares[part + 1]
@@ -259,19 +256,11 @@ def advance(
 
     As :func:`wrinklewave.dynamics.step.advance`, for arrays whose rows have layers of their own.
     """
-    by_node = np.zeros((n_edge_nodes(*a.u.shape), N_TOTALS))
     most = int(plan.counts[-1])
     dt, period = plan.step / most, most // plan.counts
-    a.counts[:] = 0
     if n_steps > 0:
         state.vx[:], state.vy[:] = 0.0, 0.0
     numbers = (n_steps, t, dt, period, state.last)
-    try:
-        share_out(march, a.shares.size - 1, *numbers, a, memory, terms, boundary, by_node, state.vx, state.vy)
-    except BaseException:
-        a.counts[:] = ABANDONED  # so that nobody waits for a share that will not come
-        raise
+    share_out_steps(march, a, totals, *numbers, a, memory, terms, boundary, state.vx, state.vy)
     if n_steps > 0:
         state.last[:] = dt * period
-    totals[FORCE] = 0.0
-    totals += by_node.sum(axis=0)

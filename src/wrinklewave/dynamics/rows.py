@@ -46,6 +46,14 @@ def differences(field, j, i):
 
 
 @scalar
+def relaxed(memory, r, i, b, a, b_next, shape):
+    """Overstress of one component now; its ``memory`` [n_rows, n_columns] of element (r, i) goes to the next step."""
+    H = overstress(memory[r, i], b, shape)
+    memory[r, i] = next_memory(H, a, b_next, shape)
+    return H
+
+
+@scalar
 def differences_of_x(X, j, i):
     """Of undeformed x; ``X`` [n_columns] by column if the mesh is a plain grid."""
     if X.ndim == 1:
@@ -108,28 +116,14 @@ def one_point_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, 
     A11, A22, A12, A33, p = mu * s11, mu * s22, mu * s12, mu * s33, K * e
     for m in range(len(terms)):
         b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
-        H = overstress(memory[stride * m][r, i], b, s11)
-        A11 += H
-        memory[stride * m][r, i] = next_memory(H, a, b_next, s11)
-        H = overstress(memory[stride * m + 1][r, i], b, s22)
-        A22 += H
-        memory[stride * m + 1][r, i] = next_memory(H, a, b_next, s22)
-        H = overstress(memory[stride * m + 2][r, i], b, s12)
-        A12 += H
-        memory[stride * m + 2][r, i] = next_memory(H, a, b_next, s12)
-        H = overstress(memory[stride * m + 3][r, i], b, s33)
-        A33 += H
-        memory[stride * m + 3][r, i] = next_memory(H, a, b_next, s33)
-        H = overstress(memory[stride * m + 4][r, i], b, q1)
-        Q1 += H
-        memory[stride * m + 4][r, i] = next_memory(H, a, b_next, q1)
-        H = overstress(memory[stride * m + 5][r, i], b, q2)
-        Q2 += H
-        memory[stride * m + 5][r, i] = next_memory(H, a, b_next, q2)
+        A11 += relaxed(memory[stride * m], r, i, b, a, b_next, s11)
+        A22 += relaxed(memory[stride * m + 1], r, i, b, a, b_next, s22)
+        A12 += relaxed(memory[stride * m + 2], r, i, b, a, b_next, s12)
+        A33 += relaxed(memory[stride * m + 3], r, i, b, a, b_next, s33)
+        Q1 += relaxed(memory[stride * m + 4], r, i, b, a, b_next, q1)
+        Q2 += relaxed(memory[stride * m + 5], r, i, b, a, b_next, q2)
         if bulk_relaxes:
-            H = overstress(memory[stride * m + 6][r, i], factors[m, 3], e)
-            p += H
-            memory[stride * m + 6][r, i] = next_memory(H, a, factors[m, 4], e)
+            p += relaxed(memory[stride * m + 6], r, i, factors[m, 3], a, factors[m, 4], e)
 
     L2 = squared_length(x13, y13, x24, y24, 0.5 * A2)
     p += bulk_viscosity(rate * inverse * Ji, L2, linear, quadratic)

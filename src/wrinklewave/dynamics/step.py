@@ -10,7 +10,8 @@ as a dozen elements.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import types
@@ -282,10 +283,15 @@ def advance(
     ``dt_last`` is the length of the step that led to the present state (0 at the start). ``totals`` gathers work and
     impulses at the boundary, see :mod:`wrinklewave.dynamics.boundary`.
     """
+    share_out_steps(march, a, totals, n_steps, t, dt_last, dt, a, memory, terms, boundary)
+
+
+def share_out_steps(march: Callable[..., None], a: Arrays, totals: np.ndarray, *arguments: Any) -> None:
+    """Call ``march(part, *arguments, totals of each edge node)`` for every share; sums go to ``totals``."""
     by_node = np.zeros((n_edge_nodes(*a.u.shape), N_TOTALS))
     a.counts[:] = 0
     try:
-        share_out(march, a.shares.size - 1, n_steps, t, dt_last, dt, a, memory, terms, boundary, by_node)
+        share_out(march, a.shares.size - 1, *arguments, by_node)
     except BaseException:
         a.counts[:] = ABANDONED  # so that nobody waits for a share that will not come
         raise

@@ -46,9 +46,8 @@ class Workers:
 def _begin(end: Event) -> None:
     global _end
     _end = end
-    signal.signal(
-        signal.SIGINT, signal.SIG_IGN
-    )  # of the whole group: the sweep hears it and tells its processes
+    # An interrupt goes to the whole group: the sweep hears it and tells its processes.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def run_member(case: Case, folder: Path) -> None:

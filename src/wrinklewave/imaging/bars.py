@@ -8,7 +8,7 @@ import numpy as np
 
 from wrinklewave._jit import allocating
 from wrinklewave.imaging.arrays import Floats
-from wrinklewave.imaging.edges.profile import blurred_step, normal_distribution
+from wrinklewave.imaging.edges.profile import blurred_step, blurred_step_at
 
 _MAX_STEPS = 30
 _CONVERGED = 1e-4  # px
@@ -52,10 +52,9 @@ def fit_bar(profile: Floats, weights: Floats, first: int, start: float, width: f
             shape[i], slope[i] = 0.0, 0.0
             for side in (-1.0, 1.0):
                 u = first + i - at + side * 0.5 * width
-                upper, upper_integral = normal_distribution((u + 0.5) / blur)
-                lower, lower_integral = normal_distribution((u - 0.5) / blur)
-                shape[i] += side * blur * (upper_integral - lower_integral)
-                slope[i] -= side * (upper - lower)
+                edge, density = blurred_step_at(u, blur)
+                shape[i] += side * edge
+                slope[i] -= side * density
         mean_shape, mean_slope = np.dot(weights, shape) / total, np.dot(weights, slope) / total
         mean = np.dot(weights, profile) / total
         own = np.dot(weights, (shape - mean_shape) ** 2)

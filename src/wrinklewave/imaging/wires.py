@@ -20,7 +20,7 @@ from wrinklewave.errors import InputError
 from wrinklewave.imaging.appearance import Appearance
 from wrinklewave.imaging.arrays import Flags, Floats, Pixels
 from wrinklewave.imaging.bars import Bar, fit_bar
-from wrinklewave.imaging.edges.profile import normal_distribution
+from wrinklewave.imaging.edges.profile import blurred_step_at
 from wrinklewave.imaging.strips import Greys, strip_shares
 
 _BAND = 12  # rows in which wires are looked for, at most
@@ -215,9 +215,7 @@ def _profile(
     first, stop = max(middle - reach, 0), min(middle + reach + 1, image.shape[1])
     shares, weights = np.zeros(stop - first), np.zeros(stop - first)
     total, lever = 0.0, 0.0
-    own = (
-        width**2 / 12.0
-    )  # variance of the wire's columns; a column c sees those at x + share (c - x), on average
+    own = width**2 / 12.0  # variance of the wire's columns; a column c sees those at x + share (c - x)
     share = own / (own + blur**2 + 1.0 / 12.0)
     tilt = _slope(rows, middle)
     along = np.sqrt(blur**2 + tilt**2 * share * blur**2)
@@ -257,7 +255,7 @@ def _edge(u: float, blur: float) -> float:
     """A blurred, pixel-integrated unit step at the distance ``u``."""
     if abs(u) > _SHARP * blur + 0.5:  # most pixels
         return 1.0 if u > 0.0 else 0.0
-    return blur * (normal_distribution((u + 0.5) / blur)[1] - normal_distribution((u - 0.5) / blur)[1])
+    return blurred_step_at(u, blur)[0]
 
 
 @allocating
