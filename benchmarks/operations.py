@@ -77,7 +77,7 @@ def counting(array: np.ndarray) -> np.ndarray:
 def count() -> dict[str, dict[str, int]]:
     """Operations of an element and of a node of the paper's case, by kind."""
     from benchmarks.parts import paper
-    from wrinklewave.dynamics.rows import node_row
+    from wrinklewave.dynamics.rows import move_node
     from wrinklewave.dynamics.step import element, update_factors
 
     model = paper(2, 2)
@@ -94,7 +94,7 @@ def count() -> dict[str, dict[str, int]]:
     found["element"] = {kind: Counting.done[kind] for kind in KINDS}
     Counting.done.clear()
     dt = Counting(1e-6)
-    node_row(1, 1, 2, forces, forces, mass, dt, dt, u, w, vx, vy)
+    move_node(1, 1, forces, forces, mass, dt, dt, u, w, vx, vy)
     found["node"] = {kind: Counting.done[kind] for kind in KINDS}
     return found
 

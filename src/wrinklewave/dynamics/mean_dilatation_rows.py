@@ -6,7 +6,7 @@ of Gauss points 1 to 4, and the mean stress if the bulk relaxes.
 
 from __future__ import annotations
 
-from wrinklewave._jit import scalar, uintp
+from wrinklewave._jit import scalar, uintp, vector
 from wrinklewave.dynamics.elements.mean_dilatation import GAUSS, dot, point_gradients
 from wrinklewave.dynamics.elements.quadrilateral import (
     bulk_viscosity,
@@ -14,6 +14,7 @@ from wrinklewave.dynamics.elements.quadrilateral import (
     twice_area,
     twice_area_rate,
 )
+from wrinklewave.dynamics.loops import heights, numbers, numbers_of_terms
 from wrinklewave.dynamics.points import corners_x, corners_y
 from wrinklewave.dynamics.rows import relaxed
 from wrinklewave.materials.neo_hookean import (
@@ -41,7 +42,7 @@ def _point(g, xi, eta, x, y, u, w, r, i, memory, terms, factors, mu):
     s11, s22, s12, s33 = isochoric_shape(C11, C22, C12, Ji * Ji)
     A11, A22, A12, A33 = mu * s11, mu * s22, mu * s12, mu * s33
     for m in range(len(terms)):
-        b, a, b_next = factors[m, 0], factors[m, 1], factors[m, 2]
+        b, a, b_next = factors[m][0], factors[m][1], factors[m][2]
         A11 += relaxed(memory[stride * m + 4 * g], r, i, b, a, b_next, s11)
         A22 += relaxed(memory[stride * m + 4 * g + 1], r, i, b, a, b_next, s22)
         A12 += relaxed(memory[stride * m + 4 * g + 2], r, i, b, a, b_next, s12)
@@ -83,7 +84,7 @@ def mean_dilatation_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, mo
     p = K * e + bulk_viscosity(rate, squared_length(X13, Y13, X24, Y24, A), linear, quadratic)
     if bulk_relaxes:
         for m in range(len(terms)):
-            p += relaxed(memory[stride * m + 16], r, i, factors[m, 3], factors[m, 1], factors[m, 4], e)
+            p += relaxed(memory[stride * m + 16], r, i, factors[m][3], factors[m][1], factors[m][4], e)
     fx1, fy1, fx2, fy2 = 0.5 * p * y24, -0.5 * p * x24, -0.5 * p * y13, 0.5 * p * x13
     fx3, fy3, fx4, fy4 = -fx1, -fy1, -fx2, -fy2
 
@@ -105,3 +106,12 @@ def mean_dilatation_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, mo
         fy4 += bx[g][3] * P[g][2] + by[g][3] * P[g][3]
     forces[0][k], forces[1][k], forces[2][k], forces[3][k] = fx1, fy1, fx2, fy2
     forces[4][k], forces[5][k], forces[6][k], forces[7][k] = fx3, fy3, fx4, fy4
+
+
+@vector
+def mean_dilatation_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """Forces of elements ``start`` to ``stop`` of row ``j``; ``forces`` are eight arrays."""
+    r = uintp(j)
+    y, c, f = heights(Y, r), numbers(moduli), numbers_of_terms(factors, terms)
+    for i in range(uintp(start), uintp(stop)):
+        mean_dilatation_element(r, i, X, y, u, w, vx, vy, memory, terms, f, c, forces)

@@ -6,7 +6,10 @@ point of weight 4 and two hourglass components, a mean-dilatation element four p
 
 from __future__ import annotations
 
-from wrinklewave._jit import scalar, uintp
+from numba import types
+from numba.extending import overload
+
+from wrinklewave._jit import INLINED, scalar, uintp
 from wrinklewave.dynamics.elements.mean_dilatation import GAUSS
 
 ONE_POINT_COMPONENTS, MEAN_DILATATION_COMPONENTS = (6, 7), (16, 17)
@@ -49,12 +52,17 @@ def corners_x(X, j, i):
     return corners(X, j, i)
 
 
-@scalar
 def corners_y(Y, j, i):
-    """Undeformed y at the corners of element (j, i); ``Y`` [n_rows] by row if the mesh is a plain grid."""
-    if Y.ndim == 1:
-        return Y[j], Y[j], Y[j + uintp(1)], Y[j + uintp(1)]
-    return corners(Y, j, i)
+    """Undeformed y at the corners of element (j, i); ``Y`` are two heights, below and above, on a plain grid."""
+    return (Y[0], Y[0], Y[1], Y[1]) if isinstance(Y, tuple) else corners(Y, j, i)
+
+
+@overload(corners_y, jit_options=INLINED)
+def choose_corners_y(Y, j, i):
+    """What numba compiles in place of :func:`corners_y`."""
+    if isinstance(Y, types.BaseTuple):
+        return lambda Y, j, i: (Y[0], Y[0], Y[1], Y[1])
+    return lambda Y, j, i: corners(Y, j, i)
 
 
 @scalar

@@ -28,9 +28,8 @@ from wrinklewave.dynamics.step import (
     KNOWN,
     MOVED,
     Arrays,
-    element_row,
+    forces_of_row,
     move_row,
-    separate,
     share_out_steps,
     update_factors,
 )
@@ -122,15 +121,6 @@ def shares_of(counts: np.ndarray, parts: int) -> np.ndarray:
 
 
 @serial
-def _forces_of_row(j, a, memory, terms, out):
-    forces = separate(out)
-    for k in range(a.first_run[j], a.first_run[j + 1]):
-        begin, end, n = a.runs[k]
-        factors, moduli = a.factors[n], a.moduli[n]
-        element_row(j, begin, end, a.x, a.y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, forces)
-
-
-@serial
 def _scale(forces, ratio, out):
     for k in range(forces.shape[0]):
         for i in range(forces.shape[1]):
@@ -146,7 +136,7 @@ def _gather(first, stop, weight, v, mean):
 
 @strict
 def _move_row(j, below, above, a, interval, dt):
-    move_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, interval, dt, a.u, a.w, a.vx, a.vy)
+    move_row(j, below, above, a.inverse_mass, interval, dt, a.u, a.w, a.vx, a.vy)
 
 
 @strict
@@ -176,13 +166,13 @@ def _advance_share(part, start, tick, dt, period, last, a, memory, terms):
     border = stop - 1 if stop < n_rows else -1
     if border >= 0:
         wait_for(a.counts[MOVED], part + 1, tick)
-        _forces_of_row(border, a, memory, terms, a.forces[part, BORDER])
+        forces_of_row(border, a, memory, terms, a.forces[part, BORDER])
         store(a.counts[KNOWN], part * LINE, tick + 1)
     interval = 0.0
     for j in range(start, stop):
         buffer = BORDER if j == border else j % 2
         if j != border:
-            _forces_of_row(j, a, memory, terms, a.forces[part, buffer])
+            forces_of_row(j, a, memory, terms, a.forces[part, buffer])
         above = a.forces[part, buffer]
         before, interval = interval, _interval(j, tick, dt, period, last)
         if j > start:

@@ -17,7 +17,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from wrinklewave._jit import INLINED, VECTOR_BYTES, in_single_precision, serial, strict, uintp, vector
+from wrinklewave._jit import INLINED, in_single_precision, serial, strict
 from wrinklewave.dynamics.barrier import ABANDONED, LINE, store, wait_for, wait_for_all
 from wrinklewave.dynamics.boundary import (
     FORCE,
@@ -31,9 +31,9 @@ from wrinklewave.dynamics.boundary import (
     remember_rows,
     straight_rate,
 )
-from wrinklewave.dynamics.mean_dilatation_rows import mean_dilatation_element
+from wrinklewave.dynamics.mean_dilatation_rows import mean_dilatation_element, mean_dilatation_row
 from wrinklewave.dynamics.points import ONE_POINT_COMPONENTS
-from wrinklewave.dynamics.rows import node_row, one_point_element
+from wrinklewave.dynamics.rows import move_node, node_row, one_point_element, one_point_row
 from wrinklewave.dynamics.team import share_out
 from wrinklewave.materials.prony import step_factors
 
@@ -92,19 +92,20 @@ def update_factors(terms, dt_last, dt, factors):
 
 def element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     """Forces of an element of whichever kind and precision this state belongs to; chosen when compiled."""
-    of = _element_of(len(memory), len(terms), u.dtype == np.float32)
+    of = _of_kind(one_point_element, mean_dilatation_element, len(memory), len(terms), u.dtype == np.float32)
     of(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
 
 
-def _element_of(n_memory, n_terms, single):
-    one = one_point_element if n_memory // n_terms in ONE_POINT_COMPONENTS else mean_dilatation_element
-    return in_single_precision(one) if single else one
+def _of_kind(one_point, mean_dilatation, n_memory, n_terms, single):
+    of = one_point if n_memory // n_terms in ONE_POINT_COMPONENTS else mean_dilatation
+    return in_single_precision(of) if single else of
 
 
 @overload(element, jit_options=INLINED)
 def choose_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     """What numba compiles in place of :func:`element`."""
-    of = _element_of(memory.count, terms.count, u.dtype == types.float32)
+    single = u.dtype == types.float32
+    of = _of_kind(one_point_element, mean_dilatation_element, memory.count, terms.count, single)
 
     def call(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
         of(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
@@ -112,35 +113,22 @@ def choose_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, for
     return call
 
 
-def lanes(field):
-    """How many numbers of a field are computed at a time; known when compiled."""
-    return VECTOR_BYTES // field.itemsize
-
-
-@overload(lanes, jit_options=INLINED)
-def choose_lanes(field):
-    """What numba compiles in place of :func:`lanes`."""
-    n = VECTOR_BYTES // (field.dtype.bitwidth // 8)
-    return lambda field: n
-
-
-@vector
 def element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
-    """Forces of elements ``start`` to ``stop`` of row ``j``, see :mod:`wrinklewave.dynamics.rows`.
+    """Forces of part of a row of elements, as :func:`element`; chosen when compiled."""
+    of = _of_kind(one_point_row, mean_dilatation_row, len(memory), len(terms), u.dtype == np.float32)
+    of(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
 
-    ``forces`` are eight arrays: rows of one array might overlap, for all that the compiler knows. What does not fill a
-    vector is computed as one with a mask: a mesh of 165 columns would else spend a fifth of its time on the last 5.
-    """
-    r, first, end = uintp(j), uintp(start), uintp(stop)
-    n = uintp(lanes(u))
-    full = end - (end - first) % n
-    for i in range(first, full):
-        element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
-    if full < end:
-        for lane in range(lanes(u)):
-            i = full + uintp(lane)
-            if i < end:
-                element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
+
+@overload(element_row, jit_options=INLINED)
+def choose_element_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+    """What numba compiles in place of :func:`element_row`."""
+    single = u.dtype == types.float32
+    of = _of_kind(one_point_row, mean_dilatation_row, memory.count, terms.count, single)
+
+    def call(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
+        of(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces)
+
+    return call
 
 
 @strict
@@ -150,23 +138,40 @@ def separate(forces):
     return f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7]
 
 
-def move_row(j, start, stop, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
-    """Move part of a row of nodes, in the precision of its state; chosen when compiled."""
-    row, number = _node_row_of(u.dtype == np.float32)
-    row(j, start, stop, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
+def move_row(j, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+    """Move a row of nodes, in the precision of its state; chosen when compiled."""
+    of, number = _in_precision(node_row, u.dtype == np.float32)
+    of(j, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
 
 
-def _node_row_of(single):
-    return (in_single_precision(node_row), types.float32) if single else (node_row, types.float64)
+def _in_precision(kernel, single):
+    return (in_single_precision(kernel), types.float32) if single else (kernel, types.float64)
 
 
-@overload(move_row)
-def choose_move_row(j, start, stop, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+@overload(move_row, jit_options=INLINED)
+def choose_move_row(j, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
     """What numba compiles in place of :func:`move_row`."""
-    row, number = _node_row_of(u.dtype == types.float32)
+    of, number = _in_precision(node_row, u.dtype == types.float32)
 
-    def call(j, start, stop, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
-        row(j, start, stop, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
+    def call(j, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+        of(j, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
+
+    return call
+
+
+def move(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+    """Move one node, as :func:`move_row`; chosen when compiled."""
+    of, number = _in_precision(move_node, u.dtype == np.float32)
+    of(r, i, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
+
+
+@overload(move, jit_options=INLINED)
+def choose_move(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+    """What numba compiles in place of :func:`move`."""
+    of, number = _in_precision(move_node, u.dtype == types.float32)
+
+    def call(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
+        of(r, i, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
 
     return call
 
@@ -187,7 +192,17 @@ def _slot(j, part, a):
 
 @strict
 def _move_row(j, below, above, a, dt_velocity, dt):
-    move_row(j, 0, a.u.shape[1], below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+    move_row(j, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+
+
+@strict
+def forces_of_row(j, a, memory, terms, out):
+    """Forces of element row ``j`` on its corners, to a buffer ``out`` [8, n_columns + 2]."""
+    forces = separate(out)
+    for k in range(a.first_run[j], a.first_run[j + 1]):
+        begin, end, n = a.runs[k]
+        factors, moduli = a.factors[n], a.moduli[n]
+        element_row(j, begin, end, a.x, a.y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, forces)
 
 
 @serial
@@ -195,11 +210,7 @@ def _rows(part, start, stop, a, memory, terms, dt_velocity, dt):
     """Forces of element rows ``start`` to ``stop`` of a share; the nodes below each move if both rows are known."""
     first, border = a.shares[part], _border(part, a)
     for j in range(start, stop):
-        forces = separate(a.forces[part, _slot(j, part, a)])
-        for k in range(a.first_run[j], a.first_run[j + 1]):
-            begin, end, n = a.runs[k]
-            factors, moduli = a.factors[n], a.moduli[n]
-            element_row(j, begin, end, a.x, a.y, a.u, a.w, a.vx, a.vy, memory, terms, factors, moduli, forces)
+        forces_of_row(j, a, memory, terms, a.forces[part, _slot(j, part, a)])
         if j > first and j != border:
             _move_between(j, part, a, dt_velocity, dt)
 

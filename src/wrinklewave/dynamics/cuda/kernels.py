@@ -46,7 +46,7 @@ from wrinklewave.dynamics.energy import (
 )
 from wrinklewave.dynamics.fields import fields_run
 from wrinklewave.dynamics.stable_step import stable_step_run
-from wrinklewave.dynamics.step import element, move_row
+from wrinklewave.dynamics.step import element, move
 
 BLOCK = 256
 """Threads per block on a device, of kernels that add up by halves; they work with fewer, if a power of two."""
@@ -103,7 +103,7 @@ def _elements(active, members, height, factors, a, memory, terms):
 def _move(j, i, dt_velocity, dt, a):
     """Move one node freely. Below the first row of elements comes the last: the forces of either are zero."""
     below, above = a.forces[j - 1], a.forces[j]
-    move_row(j, i, i + 1, below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
+    move(uintp(j), uintp(i), below, above, a.inverse_mass, dt_velocity, dt, a.u, a.w, a.vx, a.vy)
 
 
 @cuda.jit(device=True)
