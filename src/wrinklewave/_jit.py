@@ -78,7 +78,8 @@ _NO_COUNTING: dict[str, Any] = _COMMON | {
 }  # kernels allocate nothing; counting references costs a third
 _FAST: dict[str, Any] = _NO_COUNTING | {"fastmath": True}
 
-INLINED: dict[str, Any] = {"error_model": "numpy", "fastmath": True, "forceinline": True}
+STRICTLY_INLINED: dict[str, Any] = {"error_model": "numpy", "forceinline": True}
+INLINED: dict[str, Any] = STRICTLY_INLINED | {"fastmath": True}
 """For what an ``overload`` chooses when compiled."""
 
 
@@ -145,9 +146,16 @@ class _NamedConstants(ast.NodeTransformer):
 scalar = _compiler(**_FAST, forceinline=True)
 """For pure functions of scalars: inlined into the loops that call them, on the CPU and on a GPU."""
 
-vector = _compiler(**_FAST, **_offer_noalias(), forceinline=True)
-"""For loops over elements or nodes, inlined: to hand over thirty arrays takes as long as a dozen elements. Array arguments must not overlap, except that a loop may read and write the
+vector = _compiler(**_FAST, **_offer_noalias())
+"""For loops over elements or nodes. Array arguments must not overlap, except that a loop may read and write the
 same place of one array within one iteration."""
+
+inlined_vector = _compiler(**_FAST, **_offer_noalias(), forceinline=True)
+"""The same, for loops that are called in one place: to hand over thirty arrays takes as long as a dozen elements. A
+second place could be compiled to other roundings."""
+
+strict_vector = _compiler(**_NO_COUNTING, **_offer_noalias())
+"""The same with strict floating point, so that all places that call one round alike."""
 
 serial = _compiler(**_NO_COUNTING)
 """For loops whose order matters, with strict floating point."""

@@ -6,7 +6,7 @@ of Gauss points 1 to 4, and the mean stress if the bulk relaxes.
 
 from __future__ import annotations
 
-from wrinklewave._jit import scalar, uintp, vector
+from wrinklewave._jit import inlined_vector, scalar, uintp
 from wrinklewave.dynamics.elements.mean_dilatation import GAUSS, dot, point_gradients
 from wrinklewave.dynamics.elements.quadrilateral import (
     bulk_viscosity,
@@ -108,7 +108,7 @@ def mean_dilatation_element(r, i, X, Y, u, w, vx, vy, memory, terms, factors, mo
     forces[4][k], forces[5][k], forces[6][k], forces[7][k] = fx3, fy3, fx4, fy4
 
 
-@vector
+@inlined_vector
 def mean_dilatation_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     """Forces of elements ``start`` to ``stop`` of row ``j``; ``forces`` are eight arrays."""
     r = uintp(j)

@@ -28,6 +28,7 @@ from wrinklewave.dynamics.step import (
     KNOWN,
     MOVED,
     Arrays,
+    border_of,
     forces_of_row,
     move_row,
     share_out_steps,
@@ -121,6 +122,11 @@ def shares_of(counts: np.ndarray, parts: int) -> np.ndarray:
 
 
 @serial
+def _forces_of_row(j, a, memory, terms, out):
+    forces_of_row(j, a, memory, terms, out)
+
+
+@serial
 def _scale(forces, ratio, out):
     for k in range(forces.shape[0]):
         for i in range(forces.shape[1]):
@@ -159,34 +165,48 @@ def _update_factors(j, tick, dt, period, last, a):
     update_factors(a.terms[own:end], last[j] if tick == 0 else step, step, a.factors[own:end])
 
 
+@strict
+def _buffer(j, part, a):
+    """Buffer of element row j of a share."""
+    return BORDER if j == border_of(part, a) else j % 2
+
+
+@strict
+def _move_due_row(j, part, start, tick, dt, period, last, a):
+    """Move the row of nodes below element row j, of which rows from ``start`` on are due."""
+    interval = _interval(j, tick, dt, period, last)
+    below, before = a.nothing, interval
+    if j > start:
+        below, before = a.forces[part, (j - 1) % 2], _interval(j - 1, tick, dt, period, last)
+    elif j == a.shares[part] and part > 0 and _is_due(j - 1, tick, period):
+        wait_for(a.counts[KNOWN], part - 1, tick + 1)
+        below, before = a.forces[part - 1, BORDER], _interval(j - 1, tick, dt, period, last)
+    if before != interval:
+        _scale(below, before / interval, a.forces[part, SCALED])
+        below = a.forces[part, SCALED]
+    _move_row(j, below, a.forces[part, _buffer(j, part, a)], a, interval, dt * period[j])
+
+
 @serial
 def _advance_share(part, start, tick, dt, period, last, a, memory, terms):
-    """Rows of a share that are due at ``tick``, from ``start`` on: forces, and the nodes below each moved."""
-    first, stop, n_rows = a.shares[part], a.shares[part + 1], period.size
-    border = stop - 1 if stop < n_rows else -1
+    """Rows of a share that are due at ``tick``, from ``start`` on: forces, and the nodes below each moved.
+
+    The border comes first. Forces are called for in one place: a second one could be compiled to other roundings.
+    """
+    stop, n_rows, border = a.shares[part + 1], period.size, border_of(part, a)
     if border >= 0:
         wait_for(a.counts[MOVED], part + 1, tick)
-        forces_of_row(border, a, memory, terms, a.forces[part, BORDER])
-        store(a.counts[KNOWN], part * LINE, tick + 1)
-    interval = 0.0
-    for j in range(start, stop):
-        buffer = BORDER if j == border else j % 2
-        if j != border:
-            forces_of_row(j, a, memory, terms, a.forces[part, buffer])
-        above = a.forces[part, buffer]
-        before, interval = interval, _interval(j, tick, dt, period, last)
-        if j > start:
-            below = a.forces[part, (j - 1) % 2]
-        elif j == first and part > 0 and _is_due(j - 1, tick, period):
-            wait_for(a.counts[KNOWN], part - 1, tick + 1)
-            below, before = a.forces[part - 1, BORDER], _interval(j - 1, tick, dt, period, last)
+    for n in range(start, stop):
+        j = n if border < 0 else border if n == start else n - 1
+        forces_of_row(j, a, memory, terms, a.forces[part, _buffer(j, part, a)])
+        if j == border:
+            store(a.counts[KNOWN], part * LINE, tick + 1)
         else:
-            below, before = a.nothing, interval
-        if before != interval:
-            _scale(below, before / interval, a.forces[part, SCALED])
-            below = a.forces[part, SCALED]
-        _move_row(j, below, above, a, interval, dt * period[j])
+            _move_due_row(j, part, start, tick, dt, period, last, a)
+    if border >= 0:
+        _move_due_row(border, part, start, tick, dt, period, last, a)
     if stop == n_rows:
+        interval = _interval(stop - 1, tick, dt, period, last)
         _move_row(n_rows, a.forces[part, (stop - 1) % 2], a.nothing, a, interval, dt * period[stop - 1])
 
 

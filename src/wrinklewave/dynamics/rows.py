@@ -15,7 +15,7 @@ ends.
 
 from __future__ import annotations
 
-from wrinklewave._jit import scalar, uintp, vector
+from wrinklewave._jit import inlined_vector, scalar, strict, strict_vector, uintp
 from wrinklewave.dynamics.elements.one_point import hourglass_stiffness, nodal_forces
 from wrinklewave.dynamics.elements.quadrilateral import (
     bulk_viscosity,
@@ -154,7 +154,7 @@ def _one_point_forces(r, i, root, X, Y, u, w, vx, vy, memory, terms, factors, mo
     forces[1][k], forces[3][k], forces[5][k], forces[7][k] = f1, f2, f3, f4
 
 
-@vector
+@inlined_vector
 def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, moduli, forces):
     """Forces of elements ``start`` to ``stop`` of row ``j``; ``forces`` are eight arrays.
 
@@ -176,7 +176,7 @@ def one_point_row(j, start, stop, X, Y, u, w, vx, vy, memory, terms, factors, mo
                 one_point_element(r, i, X, y, u, w, vx, vy, memory, terms, f, c, forces)
 
 
-@scalar
+@strict
 def move_node(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
     """Move node ``i`` of row ``r`` by central differences, from the forces of the rows of elements beside it."""
     k = i + ONE
@@ -191,7 +191,7 @@ def move_node(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
     w[r, i] += dt * v
 
 
-@vector
+@strict_vector
 def node_row(j, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
     """Move all nodes of row ``j``."""
     r, end = uintp(j), uintp(u.shape[1])

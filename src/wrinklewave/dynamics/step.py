@@ -17,7 +17,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from wrinklewave._jit import INLINED, in_single_precision, serial, strict
+from wrinklewave._jit import INLINED, STRICTLY_INLINED, in_single_precision, serial, strict
 from wrinklewave.dynamics.barrier import ABANDONED, LINE, store, wait_for, wait_for_all
 from wrinklewave.dynamics.boundary import (
     FORCE,
@@ -148,7 +148,7 @@ def _in_precision(kernel, single):
     return (in_single_precision(kernel), types.float32) if single else (kernel, types.float64)
 
 
-@overload(move_row, jit_options=INLINED)
+@overload(move_row, jit_options=STRICTLY_INLINED)
 def choose_move_row(j, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
     """What numba compiles in place of :func:`move_row`."""
     of, number = _in_precision(node_row, u.dtype == types.float32)
@@ -165,7 +165,7 @@ def move(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
     of(r, i, below, above, inverse_mass, number(dt_velocity), number(dt), u, w, vx, vy)
 
 
-@overload(move, jit_options=INLINED)
+@overload(move, jit_options=STRICTLY_INLINED)
 def choose_move(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy):
     """What numba compiles in place of :func:`move`."""
     of, number = _in_precision(move_node, u.dtype == types.float32)
@@ -177,7 +177,7 @@ def choose_move(r, i, below, above, inverse_mass, dt_velocity, dt, u, w, vx, vy)
 
 
 @strict
-def _border(part, a):
+def border_of(part, a):
     """The last element row of a share, if another share follows it; else -1."""
     return a.shares[part + 1] - 1 if part < a.shares.size - 2 else -1
 
@@ -187,7 +187,7 @@ def _slot(j, part, a):
     """Buffer of element row j of a share."""
     if j == a.shares[part]:
         return FIRST
-    return BORDER if j == _border(part, a) else (j - a.shares[part]) % 2
+    return BORDER if j == border_of(part, a) else (j - a.shares[part]) % 2
 
 
 @strict
@@ -208,7 +208,7 @@ def forces_of_row(j, a, memory, terms, out):
 @serial
 def _rows(part, start, stop, a, memory, terms, dt_velocity, dt):
     """Forces of element rows ``start`` to ``stop`` of a share; the nodes below each move if both rows are known."""
-    first, border = a.shares[part], _border(part, a)
+    first, border = a.shares[part], border_of(part, a)
     for j in range(start, stop):
         forces_of_row(j, a, memory, terms, a.forces[part, _slot(j, part, a)])
         if j > first and j != border:
@@ -224,17 +224,22 @@ def _move_between(j, part, a, dt_velocity, dt):
 
 @strict
 def _share(part, step, a, memory, terms, dt_velocity, dt):
-    """Forces of all elements of a share in a step, and all its nodes but the first row moved."""
-    first, last, border = a.shares[part], a.shares[part + 1], _border(part, a)
+    """Forces of all elements of a share in a step, and all its nodes but the first row moved.
+
+    There is one call of :func:`_rows`: a second one could be compiled to other roundings.
+    """
+    first, last, border = a.shares[part], a.shares[part + 1], border_of(part, a)
     middle = (first + last) // 2 if border >= 0 else last
-    _rows(part, first, middle, a, memory, terms, dt_velocity, dt)
-    if border >= 0:
-        wait_for(a.counts[MOVED], part + 1, step)
-        _rows(part, border, last, a, memory, terms, dt_velocity, dt)
-        store(a.counts[KNOWN], part * LINE, step + 1)
-        _rows(part, middle, border, a, memory, terms, dt_velocity, dt)
-        if border > first:
-            _move_between(border, part, a, dt_velocity, dt)
+    for stage in range(3 if border >= 0 else 1):
+        if stage == 1:
+            wait_for(a.counts[MOVED], part + 1, step)
+        start = first if stage == 0 else border if stage == 1 else middle
+        stop = middle if stage == 0 else last if stage == 1 else border
+        _rows(part, start, stop, a, memory, terms, dt_velocity, dt)
+        if stage == 1:
+            store(a.counts[KNOWN], part * LINE, step + 1)
+    if border > first:
+        _move_between(border, part, a, dt_velocity, dt)
 
 
 @strict
