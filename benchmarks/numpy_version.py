@@ -60,7 +60,7 @@ class NumpyVersion:
                     at_node += of_element
                 v -= dt * a.inverse_mass * gathered
                 x += dt * v
-            hold_rows(0, rows, t + (n + 1) * dt, dt, nodes, boundary, totals)
+            hold_rows(0, rows, t + (n + 1) * dt, dt, nodes, boundary, totals, n == n_steps - 1)
 
     def _forces(self) -> tuple[tuple[np.ndarray, ...], tuple[np.ndarray, ...]]:
         """Forces along x and across on the corners of every element; the memory goes to the next step."""

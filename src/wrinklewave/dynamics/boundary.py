@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from wrinklewave._jit import serial, strict
+from wrinklewave._jit import serial, strict, uintp, vector
 from wrinklewave.dynamics.self_contact import NO_BINS, keep_apart
 
 FREE, FIXED, ROLLER = 0, 1, 2
@@ -140,13 +140,23 @@ def edge_ranges(first, stop, rows, columns):
     )
 
 
+@vector
+def _remember_row(j, u, w, vx, vy, old):
+    r = uintp(j)
+    for i in range(uintp(u.shape[1])):
+        old[0, i], old[1, i], old[2, i], old[3, i] = u[r, i], w[r, i], vx[r, i], vy[r, i]
+
+
 @strict
 def remember_rows(first, stop, a, boundary):
     """Keep what the edges in node rows ``first`` to ``stop`` need of the state before a step."""
-    rows, columns = a.u.shape
-    for start, end in edge_ranges(first, stop, rows, columns):
-        for n in range(start, end):
-            remember_node(n, a, boundary)
+    rows = a.u.shape[0]
+    for j in range(first, stop):
+        _remember(boundary.old[LEFT], j, j, 0, a)
+    if first == 0 and boundary.bottom == FREE:
+        _remember_row(0, a.u, a.w, a.vx, a.vy, boundary.old[BOTTOM])
+    if stop == rows and boundary.top == FREE:
+        _remember_row(rows - 1, a.u, a.w, a.vx, a.vy, boundary.old[TOP])
 
 
 @strict
@@ -292,20 +302,46 @@ def hold_apart(edge, dt, a, boundary, totals):
         totals[CONTACT_LOSS] += keep_apart(a, row, side, dt, boundary.old[edge], boundary.bins[edge])
 
 
+@vector
+def _reach(j, X, u):
+    """Least and largest x of a row of nodes."""
+    r = uintp(j)
+    least = most = X[r, 0] + u[r, 0]
+    for i in range(uintp(u.shape[1])):
+        x = X[r, i] + u[r, i]
+        least, most = min(least, x), max(most, x)
+    return least, most
+
+
 @strict
-def hold_rows(first, stop, t, dt, a, boundary, totals):
+def _is_clear(edge, drive, a, boundary):
+    """Whether a surface is free, and touches neither plate nor wall: then nothing holds it but the ends."""
+    if (boundary.top if edge == TOP else boundary.bottom) != FREE:
+        return False
+    least, most = _reach(a.u.shape[0] - 1 if edge == TOP else 0, a.X, a.u)
+    return (boundary.left == LEFT_FREE or least >= drive[0]) and (
+        not boundary.wall or most <= boundary.length
+    )
+
+
+@strict
+def hold_rows(first, stop, t, dt, a, boundary, totals, is_last):
     """Make node rows ``first`` to ``stop`` at time ``t`` [s], reached by a free step ``dt``, obey their conditions.
 
     All but :func:`keep_straight`. ``totals`` [n_edge_nodes, N_TOTALS] are gathered node by node, so that their sum does
-    not depend on who takes which rows.
+    not depend on who takes which rows; the force is that of the last of all steps.
     """
     rows, columns = a.u.shape
     if boundary.bins.shape[2] > 0:
         for edge in (BOTTOM, TOP):
             if (edge == TOP and stop == rows) or (edge == BOTTOM and first == 0):
                 hold_apart(edge, dt, a, boundary, totals[0 if edge == BOTTOM else rows - 1])
-    drive = drive_position(t, dt, boundary)
-    for start, end in edge_ranges(first, stop, rows, columns):
+    drive, ranges = drive_position(t, dt, boundary), edge_ranges(first, stop, rows, columns)
+    for edge in range(len(ranges)):
+        start, end = ranges[edge]
+        if is_last:
+            totals[start:end, FORCE] = 0.0
+        if (edge == BOTTOM or edge == TOP) and end > start and _is_clear(edge, drive, a, boundary):
+            start = end - 1  # the corner belongs to the right end
         for n in range(start, end):
-            totals[n, FORCE] = 0.0
             hold_node(n, drive, dt, a, boundary, totals[n])

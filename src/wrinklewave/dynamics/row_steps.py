@@ -211,15 +211,15 @@ def _advance_share(part, start, tick, dt, period, last, a, memory, terms):
 
 
 @serial
-def _hold_share(start, stop, t, tick, dt, period, nodes, boundary, totals):
+def _hold_share(start, stop, t, tick, last_tick, dt, period, nodes, boundary, totals):
     """Conditions at the edges of the rows of nodes that have moved; rows of one step together."""
     j, n_rows = start, period.size
     while j < stop:
         k = j + 1
         while k < stop and period[k] == period[j]:
             k += 1
-        step = dt * period[j]
-        hold_rows(j, k + 1 if k == n_rows else k, t + (tick + period[j]) * dt, step, nodes, boundary, totals)
+        step, then, end = dt * period[j], tick + period[j], k + 1 if k == n_rows else k
+        hold_rows(j, end, t + then * dt, step, nodes, boundary, totals, then == last_tick)
         j = k
 
 
@@ -241,7 +241,7 @@ def march(part, n_steps, t, dt, period, last, a, memory, terms, boundary, mean_v
                 _update_factors(j, tick, dt, period, last, a)
         remember_rows(start, stop_nodes, nodes, boundary)
         _advance_share(part, start, tick, dt, period, last, a, memory, terms)
-        _hold_share(start, stop, t, tick, dt, period, nodes, boundary, totals)
+        _hold_share(start, stop, t, tick, n_steps * most, dt, period, nodes, boundary, totals)
         if tick >= (n_steps - 1) * most:
             for j in range(start, stop_nodes):
                 weight = period[min(j, n_rows - 1)] / most

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from wrinklewave._jit import serial, strict
+from wrinklewave._jit import serial, strict, uintp, vector
 
 RETURNED = 0.01
 """Part of the overlap that is given back in one step."""
@@ -22,15 +22,15 @@ DEEPEST = 0.5
 EMPTY = -1
 
 
-@strict
-def longest_step(a, row):
-    """Largest extent of a segment along x [m], and whether the surface overhangs anywhere."""
-    longest, overhangs = 0.0, False
-    for i in range(a.X.shape[1] - 1):
-        step = a.X[row, i + 1] + a.u[row, i + 1] - a.X[row, i] - a.u[row, i]
-        overhangs = overhangs or step < 0.0
-        longest = max(longest, abs(step))
-    return longest, overhangs
+@vector
+def _steps(row, X, u):
+    """Least and largest step along x from node to node of a surface [m]; it overhangs where one is negative."""
+    r = uintp(row)
+    least = most = X[r, 1] + u[r, 1] - X[r, 0] - u[r, 0]
+    for i in range(uintp(1), uintp(X.shape[1] - 1)):
+        step = X[r, i + uintp(1)] + u[r, i + uintp(1)] - X[r, i] - u[r, i]
+        least, most = min(least, step), max(most, step)
+    return least, most
 
 
 @strict
@@ -90,15 +90,15 @@ def keep_apart(a, row, side, dt, old, bins):
 
     ``side`` is +1 for the upper surface, -1 for the lower one; ``old`` holds u, w, vx, vy of the row before the step.
     """
-    width, overhangs = longest_step(a, row)
-    if not overhangs:
+    least, most = _steps(row, a.X, a.u)
+    if least >= 0.0:
         return 0.0
     n = a.X.shape[1]
     left, right = _place(a, row, 0)[0], _place(a, row, 0)[0]
     for i in range(n):
         x = _place(a, row, i)[0]
         left, right = min(left, x), max(right, x)
-    width = max(width, (right - left) / bins.shape[1])
+    width = max(most, -least, (right - left) / bins.shape[1])
     _sort_segments(a, row, left, width, bins)
     lost = 0.0
     for i in range(1, n - 1):

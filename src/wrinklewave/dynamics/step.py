@@ -273,7 +273,7 @@ def march(part, n_steps, t, dt_last, dt, a, memory, terms, boundary, totals):
         remember_rows(first, stop, nodes, boundary)
         _share(part, n, a, memory, terms, dt_velocity, dt)
         _edge_rows_of_share(part, n, a, dt_velocity, dt)
-        hold_rows(first, stop, t + (n + 1) * dt, dt, nodes, boundary, totals)
+        hold_rows(first, stop, t + (n + 1) * dt, dt, nodes, boundary, totals, n == n_steps - 1)
         if boundary.left == LEFT_STRAIGHT:
             meeting = wait_for_all(a.counts[MET], part, n_parts, meeting + 1)
             rate = straight_rate(nodes)
