@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from wrinklewave.config import load_case
-from wrinklewave.dynamics.barrier import LINE
 from wrinklewave.dynamics.boundary import Boundary
 from wrinklewave.dynamics.model import Model, build_model
+from wrinklewave.dynamics.shares import shared_out
 from wrinklewave.dynamics.stable_step import stable_steps_share
 from wrinklewave.dynamics.step import Arrays, update_factors
 
@@ -43,12 +43,7 @@ class Problem:
     def arrays(self, threads: int) -> Arrays:
         """The same state, shared out to ``threads``."""
         a = self.model.arrays
-        rows, columns = self.model.mesh.shape
-        return a._replace(
-            shares=np.linspace(0, rows, threads + 1).astype(np.int64),
-            forces=np.zeros((threads, 4, 8, columns + 2), a.u.dtype),
-            counts=np.zeros((3, threads * LINE), dtype=np.int64),
-        )
+        return a._replace(**shared_out(a.u, threads))
 
     def copy(self) -> Problem:
         """The same problem with a state of its own."""

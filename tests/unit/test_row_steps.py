@@ -15,7 +15,8 @@ from wrinklewave.dynamics import row_steps, step
 from wrinklewave.dynamics.boundary import N_TOTALS
 from wrinklewave.dynamics.checkpoint import Record, read_checkpoint, write_checkpoint
 from wrinklewave.dynamics.model import Model, build_model
-from wrinklewave.dynamics.row_steps import MOST, Plan, plan, shares_of
+from wrinklewave.dynamics.row_steps import MOST, Plan, plan
+from wrinklewave.dynamics.shares import shares_of
 from wrinklewave.dynamics.simulation import Simulation
 from wrinklewave.dynamics.step import advance
 

@@ -5,9 +5,9 @@ import pytest
 
 from support.backend_runs import MODELS
 from support.models import ELEMENTS, build, relaxing
-from wrinklewave.dynamics.barrier import LINE
 from wrinklewave.dynamics.boundary import FIXED, N_TOTALS, WORK
 from wrinklewave.dynamics.model import Model
+from wrinklewave.dynamics.shares import shared_out
 from wrinklewave.dynamics.step import advance
 from wrinklewave.dynamics.team import share_out
 from wrinklewave.mesh.block import block
@@ -17,12 +17,7 @@ STATE = ("u", "w", "vx", "vy")
 
 def marched(name: str, parts: int, steps: int = 120, dt: float = 4e-7) -> dict[str, np.ndarray]:
     model, totals = MODELS[name](), np.zeros(N_TOTALS)
-    rows, columns = model.mesh.shape
-    arrays = model.arrays._replace(
-        shares=np.linspace(0, rows, parts + 1).astype(np.int64),
-        forces=np.zeros((parts, 4, 8, columns + 2), model.arrays.u.dtype),
-        counts=np.zeros((3, parts * LINE), dtype=np.int64),
-    )
+    arrays = model.arrays._replace(**shared_out(model.arrays.u, parts))
     advance(steps, 0.0, 0.0, dt, arrays, model.memory_rows, model.terms, model.boundary, totals)
     return {field: getattr(arrays, field) for field in STATE} | {"memory": model.memory, "totals": totals}
 

@@ -341,7 +341,7 @@ def hold_rows(first, stop, t, dt, a, boundary, totals, is_last):
         start, end = ranges[edge]
         if is_last:
             totals[start:end, FORCE] = 0.0
-        if (edge == BOTTOM or edge == TOP) and end > start and _is_clear(edge, drive, a, boundary):
+        if edge in (BOTTOM, TOP) and end > start and _is_clear(edge, drive, a, boundary):
             start = end - 1  # the corner belongs to the right end
         for n in range(start, end):
             hold_node(n, drive, dt, a, boundary, totals[n])

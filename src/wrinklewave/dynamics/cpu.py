@@ -14,6 +14,7 @@ from wrinklewave.dynamics.boundary import N_TOTALS
 from wrinklewave.dynamics.energy import KINETIC, N_COLUMNS, N_SUMS, survey_share
 from wrinklewave.dynamics.fields import FIELDS, fields_share, set_aside
 from wrinklewave.dynamics.row_steps import Plan
+from wrinklewave.dynamics.shares import shares_of
 from wrinklewave.dynamics.stable_step import stable_steps_share
 from wrinklewave.dynamics.step import advance
 from wrinklewave.dynamics.team import share_out
@@ -115,7 +116,7 @@ class Cpu:
         if wanted.counts is None or m.row_steps is None:
             advance(wanted.n, t, wanted.last_dt, wanted.dt, shared, *state)
             return
-        shared = shared._replace(shares=row_steps.shares_of(wanted.counts, shared.shares.size - 1))
+        shared = shared._replace(shares=shares_of(wanted.counts, shared.shares.size - 1))
         row_steps.advance(wanted.n, t, Plan(wanted.dt, wanted.counts), m.row_steps, shared, *state)
 
     def _compile(self, counts: NDArray[np.int64] | None) -> None:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.dynamics import drives
-from wrinklewave.dynamics.barrier import LINE
 from wrinklewave.dynamics.boundary import (
     FIXED,
     FREE,
@@ -23,6 +22,7 @@ from wrinklewave.dynamics.boundary import (
 )
 from wrinklewave.dynamics.points import MEAN_DILATATION_COMPONENTS, ONE_POINT_COMPONENTS
 from wrinklewave.dynamics.row_steps import RowSteps, with_layers_of_rows
+from wrinklewave.dynamics.shares import shared_out
 from wrinklewave.dynamics.step import Arrays
 from wrinklewave.errors import InputError
 from wrinklewave.materials.moduli import plane_wave_modulus, substrate_moduli
@@ -182,7 +182,6 @@ def assemble(
     n_terms = terms.shape[1]
     rows, columns = mesh.shape
     runs, first_run = material_runs(mesh.layer)
-    parts = min(threads, rows)
     nodes = mesh.X.shape
     X, Y = np.ascontiguousarray(mesh.X, number), np.ascontiguousarray(mesh.Y, number)
     is_plain = not (np.ptp(X, axis=0).any() or np.ptp(Y, axis=1).any())
@@ -204,10 +203,8 @@ def assemble(
         ),
         terms=terms,
         factors=np.ones((len(materials), n_terms, 5), number),
-        shares=np.linspace(0, rows, parts + 1).astype(np.int64),
-        forces=np.zeros((parts, 4, 8, columns + 2), number),
         nothing=np.zeros((8, columns + 2), number),
-        counts=np.zeros((3, parts * LINE), dtype=np.int64),
+        **shared_out(X, threads),
     )
     memory = np.zeros((n_terms * components, rows, columns), number)
     return Model(mesh, materials, arrays, memory, (0.0,) * n_terms, boundary, density)

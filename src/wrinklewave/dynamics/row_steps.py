@@ -39,8 +39,6 @@ SCALED = 2
 """Buffer of forces that come from a row with another step; 0 and 1 take turns."""
 MOST = 16
 """Steps of the fastest row during one of the slowest."""
-SURFACE = 1.5
-"""What the conditions at a surface cost, in rows of elements."""
 
 
 class RowSteps(NamedTuple):
@@ -107,23 +105,6 @@ def _with_smallest(step: float, bounds: np.ndarray) -> Plan:
     for j in range(bounds.size - 2, -1, -1):
         ratios[j] = min(ratios[j], 2 * ratios[j + 1])
     return Plan(step * ratios[0], ratios[0] // ratios)
-
-
-def shares_of(counts: np.ndarray, parts: int) -> np.ndarray:
-    """First row of each thread's share, and the number of rows: shares of about the same work."""
-    work = counts.astype(float)
-    work[-1] += SURFACE * work[-1]
-    done, rows = np.cumsum(work), counts.size
-    shares = np.searchsorted(done, done[-1] * np.arange(parts + 1) / parts)
-    shares[0], shares[-1] = 0, rows
-    for part in range(1, parts):
-        shares[part] = min(max(shares[part], shares[part - 1] + 1), rows - parts + part)
-    return shares.astype(np.int64)
-
-
-@serial
-def _forces_of_row(j, a, memory, terms, out):
-    forces_of_row(j, a, memory, terms, out)
 
 
 @serial
