@@ -18,7 +18,7 @@ from wrinklewave.config.recorded import recorded_analysis
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.common_grid import CommonGrid, resample
 from wrinklewave.experiments.compare import Comparison, Quantity, compare
-from wrinklewave.figures.side_by_side import COMPARISON_FIGURES, write_comparison_figures
+from wrinklewave.figures.side_by_side import COMPARISON_FIGURES, compared_inputs
 
 QUICK = Path(__file__).parents[2] / "examples" / "quick.toml"
 SPEED, WAVELENGTH, LENGTH = 50.0, 2e-3, 50e-3
@@ -166,7 +166,8 @@ def test_one_motion_is_no_comparison() -> None:
 
 def test_every_figure_is_drawn_without_material_points_or_wrinkles(tmp_path: Path) -> None:
     flat = made(amplitude=0.0).isel(point=slice(0, 0))
-    files = write_comparison_figures(tmp_path, compared(made(), flat, made(), made()))
+    inputs = compared_inputs(compared(made(), flat, made(), made()))
+    files = COMPARISON_FIGURES.write(tmp_path, inputs, kinds={"measurement"})
     assert set(files) == set(COMPARISON_FIGURES)
     assert all(file.stat().st_size > 10_000 for file in files.values())
 

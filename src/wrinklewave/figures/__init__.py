@@ -15,7 +15,6 @@ from wrinklewave.figures import (  # noqa: F401 - each registers its figure, in 
     fig_s4,
     fig_s5,
 )
-from wrinklewave.figures.inputs import FigureInputs, StrainSnapshots, figure_inputs
-from wrinklewave.figures.registry import FIGURES, FigureSpec, write_all
+from wrinklewave.figures.inputs import FIGURES, FigureInputs, StrainSnapshots, figure_inputs
 
-__all__ = ["FIGURES", "FigureInputs", "FigureSpec", "StrainSnapshots", "figure_inputs", "write_all"]
+__all__ = ["FIGURES", "FigureInputs", "StrainSnapshots", "figure_inputs"]

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.inputs import FigureInputs
-from wrinklewave.figures.registry import figure
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.style import BOUNDARY_COLOUR, MILLI, new_figure
 
 if TYPE_CHECKING:
@@ -17,7 +16,7 @@ SHOWN_BANDWIDTHS = 4.0
 SHOWN_IN_KHZ = 2000.0
 
 
-@figure(
+@FIGURES.figure(
     "fig_2d_boundary_spectrum",
     number="2D",
     caption="Motion of the struck end, and the magnitude of its Fourier transform over its maximum; dashed: "

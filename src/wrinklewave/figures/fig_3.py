@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.inputs import FigureInputs
-from wrinklewave.figures.registry import figure
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.style import COLOURS, MILLI, Margins, new_figure, panel_letter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@figure(
+@FIGURES.figure(
     "fig_3_curves",
     number="3",
     caption="Out-of-plane displacement over its maximum (A) against time at fixed laboratory positions, "

@@ -6,16 +6,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.inputs import FigureInputs
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.overlays import draw_boundary, draw_material_points, draw_speed, frame
-from wrinklewave.figures.registry import figure
 from wrinklewave.figures.style import MAP_MARGINS, legend_above, new_figure, space_time_map
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@figure(
+@FIGURES.figure(
     "fig_4b_wrinkles",
     number="4B",
     caption="Out-of-plane surface wrinkling after removal of the low-frequency pulse. Magenta: the wrinkle "

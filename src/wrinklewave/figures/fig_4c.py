@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.inputs import FigureInputs
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.overlays import draw_boundary, draw_material_points, draw_speed, frame
-from wrinklewave.figures.registry import figure
 from wrinklewave.figures.style import MAP_MARGINS, legend_above, new_figure, space_time_map
 
 if TYPE_CHECKING:
@@ -17,7 +16,7 @@ if TYPE_CHECKING:
 SHOWN_RATE = 300.0
 
 
-@figure(
+@FIGURES.figure(
     "fig_4c_strain_rate",
     number="4C",
     caption="Magnitude of the depth-averaged nominal strain rate, cut at 300 /s as in the paper where it "

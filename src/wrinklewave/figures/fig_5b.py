@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wrinklewave.figures.inputs import FigureInputs
-from wrinklewave.figures.registry import figure
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.style import MILLI, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@figure(
+@FIGURES.figure(
     "fig_5b_amplitude",
     number="5B",
     caption="Wrinkle amplitude (mean of the Hilbert envelope over the window) against time, over A0, the "

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wrinklewave.figures.inputs import FigureInputs
-from wrinklewave.figures.registry import figure
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.style import MILLI, Margins, colour_bar, legend_above, new_figure, outlined
 
 if TYPE_CHECKING:
@@ -15,7 +14,7 @@ SHORTEST, LONGEST = 0.5, 2.0
 """Wavelengths shown, over the critical one, or over that of the strongest spectrum where no film is named."""
 
 
-@figure(
+@FIGURES.figure(
     "fig_5d_wavelength",
     number="5D",
     caption="Spectra of the wrinkles in the window against time, over their maximum. Dashed red: critical"

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wrinklewave.figures.inputs import FigureInputs
-from wrinklewave.figures.registry import figure
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.style import MILLI, Margins, new_figure
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ SHARES = {
 }
 
 
-@figure(
+@FIGURES.figure(
     "energy_balance",
     number="",
     caption="Where the work of the struck end goes (stacked), and the imbalance over the largest external"

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.inputs import FigureInputs
-from wrinklewave.figures.registry import figure
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.style import COLOURS, MILLI, Margins, colour_bar, colour_map, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@figure(
+@FIGURES.figure(
     "fig_s2_strain_over_depth",
     number="S2",
     caption="Nominal strain in the deformed block at a few times (left), and over its depth at undeformed"

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.inputs import FigureInputs
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.overlays import draw_boundary, draw_speed, frame
-from wrinklewave.figures.registry import figure
 from wrinklewave.figures.style import MILLI, Margins, legend_above, new_figure, panel_letter, space_time_map
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ def _possible(inputs: FigureInputs) -> bool:
     return strains is not None and strains.momentary_critical_strain_seen is not None
 
 
-@figure(
+@FIGURES.figure(
     "fig_s4_momentary_critical_strain",
     number="S4",
     caption="(A) Depth-averaged nominal stress. (B) Critical strain of the film on a substrate whose "

@@ -6,15 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.inputs import FigureInputs
-from wrinklewave.figures.registry import figure
+from wrinklewave.figures.inputs import FIGURES, FigureInputs
 from wrinklewave.figures.style import COLOURS, MILLI, Margins, new_figure, panel_letter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@figure(
+@FIGURES.figure(
     "fig_s5_curvature",
     number="S5",
     caption="(A) The surface without wrinkles at a few times; dots: struck end. Its length s along the arc is more "

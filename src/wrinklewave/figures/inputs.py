@@ -1,4 +1,4 @@
-"""What figures are drawn from."""
+"""What figures of one surface motion are drawn from, and the registry of these figures."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from wrinklewave.analysis.results import Analysis
 from wrinklewave.analysis.subject import Subject, subject_of
+from wrinklewave.figures.registry import Registry
 from wrinklewave.laboratory_frame import Array
 
 if TYPE_CHECKING:
@@ -59,6 +60,9 @@ class FigureInputs:
     def surface_moves(self) -> bool:
         """Whether there is any out-of-plane displacement to show."""
         return bool(np.fmax.reduce(np.abs(self.subject.u_y), axis=None) > 0.0)
+
+
+FIGURES: Registry[FigureInputs] = Registry()
 
 
 def figure_inputs(

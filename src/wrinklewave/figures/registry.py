@@ -1,87 +1,92 @@
-"""Registry of the figures, and writing them all."""
+"""Registries of figures: what each shows and when it can be drawn, and writing all of a registry."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from wrinklewave.figures.inputs import FigureInputs
 from wrinklewave.figures.style import RC
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-Draw = Callable[[FigureInputs], "Figure"]
+Inputs = TypeVar("Inputs")
 
 
 @dataclass(frozen=True)
-class FigureSpec:
+class FigureSpec(Generic[Inputs]):
     """A figure that can be drawn.
 
     Attributes:
         name: file name without its ending.
-        number: of the paper's figure, such as "2C".
+        number: of the paper's figure, such as "2C"; empty if there is none.
         caption: what it shows.
         draw: makes it.
         possible: whether the inputs hold what it needs.
-        measured: name and number of the same figure in the paper's arrangement where the surface motion was measured.
+        measured: name and number of the same figure in the paper's arrangement where all surface motions were
+            measured.
     """
 
     name: str
     number: str
     caption: str
-    draw: Draw
-    possible: Callable[[FigureInputs], bool]
+    draw: Callable[[Inputs], Figure]
+    possible: Callable[[Inputs], bool]
     measured: tuple[str, str] | None = None
 
-    def of(self, kind: str) -> FigureSpec:
-        """The figure as it is called for a "simulation" or a "measurement"."""
-        if kind != "measurement" or self.measured is None:
+    def of(self, kinds: Collection[str]) -> FigureSpec[Inputs]:
+        """The figure as it is called for surface motions of these kinds, "simulation" or "measurement"."""
+        if self.measured is None or set(kinds) != {"measurement"}:
             return self
         return replace(self, name=self.measured[0], number=self.measured[1])
 
 
-FIGURES: dict[str, FigureSpec] = {}
+class Registry(dict[str, FigureSpec[Inputs]], Generic[Inputs]):
+    """Figures that are drawn from one kind of inputs, by name, in the order in which they were registered."""
 
+    def figure(
+        self,
+        name: str,
+        *,
+        number: str,
+        caption: str,
+        possible: Callable[[Inputs], bool] = lambda inputs: True,
+        measured: tuple[str, str] | None = None,
+    ) -> Callable[[Callable[[Inputs], Figure]], Callable[[Inputs], Figure]]:
+        """Register a function that draws a figure; it is called with the style of this package in force."""
 
-def figure(
-    name: str,
-    *,
-    number: str,
-    caption: str,
-    possible: Callable[[FigureInputs], bool] = lambda inputs: True,
-    measured: tuple[str, str] | None = None,
-) -> Callable[[Draw], Draw]:
-    """Register a function that draws a figure; it is called with the style of this package in force."""
+        def register(draw: Callable[[Inputs], Figure]) -> Callable[[Inputs], Figure]:
+            def styled(inputs: Inputs) -> Figure:
+                import matplotlib
 
-    def register(draw: Draw) -> Draw:
-        def styled(inputs: FigureInputs) -> Figure:
-            import matplotlib
+                with matplotlib.rc_context(RC):
+                    return draw(inputs)
 
-            with matplotlib.rc_context(RC):
-                return draw(inputs)
+            self[name] = FigureSpec(name, number, caption, styled, possible, measured)
+            return styled
 
-        FIGURES[name] = FigureSpec(name, number, caption, styled, possible, measured)
-        return styled
+        return register
 
-    return register
+    def write(self, folder: str | Path, inputs: Inputs, *, kinds: Collection[str]) -> dict[str, Path]:
+        """Write every figure that is possible as PNG; return the files by name.
 
+        Args:
+            folder: made if need be.
+            inputs: what figures are drawn from.
+            kinds: of the surface motions in them, "simulation" or "measurement".
+        """
+        import matplotlib
 
-def write_all(folder: str | Path, inputs: FigureInputs) -> dict[str, Path]:
-    """Write every figure that is possible as PNG; return the files by name."""
-    import matplotlib
-
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    files = {}
-    for name, spec in FIGURES.items():
-        if spec.possible(inputs):
-            files[name] = folder / f"{spec.of(inputs.subject.kind).name}.png"
-            drawing = spec.draw(inputs)
-            with matplotlib.rc_context(RC):
-                drawing.savefig(
-                    files[name], pil_kwargs={"compress_level": 1}
-                )  # a third faster, a fifth larger
-    return files
+        folder = Path(folder)
+        folder.mkdir(parents=True, exist_ok=True)
+        options: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}}  # a third faster, a fifth larger
+        files = {}
+        for name, spec in self.items():
+            if spec.possible(inputs):
+                files[name] = folder / f"{spec.of(kinds).name}.png"
+                drawing = spec.draw(inputs)
+                with matplotlib.rc_context(RC):
+                    drawing.savefig(files[name], **options)
+        return files

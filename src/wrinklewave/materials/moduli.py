@@ -163,7 +163,7 @@ def film_moduli(film: Film, mu: float) -> Viscoelastic:
     """Return the relaxing moduli of a case's film, given its long-term shear modulus ``mu`` [Pa].
 
     The modulus is an argument because it may have to be derived from measured wrinkles, see
-    :func:`wrinklewave.theory.wrinkling.film_shear_modulus`.
+    :func:`wrinklewave.theory.film.film_shear_modulus`.
     """
     return viscoelastic(
         density=film.density,

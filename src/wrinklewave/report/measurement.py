@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.experiments.run_folder import write_text
-from wrinklewave.figures import figure_inputs, write_all
+from wrinklewave.figures import FIGURES, figure_inputs
 from wrinklewave.figures.detections import Detection, detections_figure, locking_figure
 from wrinklewave.imaging.prepared import open_experiment
 from wrinklewave.report.page import ReportContext, render
@@ -40,7 +40,7 @@ def present_measurement(measurement: Measurement) -> Path:
     assert analysis is not None  # ... and this
     settings = measurement.experiment.analysis
     inputs = figure_inputs(surface, analysis, positions=settings.positions, times=settings.times)
-    figures = write_all(folder / "figures", inputs)
+    figures = FIGURES.write(folder / "figures", inputs, kinds={"measurement"})
     pictures = [
         _saved(folder / "figures" / "detections.png", _detections(measurement), DETECTIONS_CAPTION),
         _saved(

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from wrinklewave.experiments.paper_table import Row
-from wrinklewave.figures.compression import CompressionFigure
-from wrinklewave.figures.registry import FIGURES, FigureSpec
-from wrinklewave.figures.side_by_side import ComparisonFigure
+from wrinklewave.figures import FIGURES
+from wrinklewave.figures.registry import FigureSpec
 from wrinklewave.laboratory_frame import Array
 from wrinklewave.report.formats import number, shown
 from wrinklewave.report.tables import bulk_choices, remarks, tally
@@ -87,7 +86,8 @@ def render(context: ReportContext, template: str = "report.html", **others: Any)
             headline=[shown(name, numbers[name]) for name in HEADLINE if numbers.get(name) is not None],
             results=[shown(name, value) for name, value in numbers.items()],
             figures=[
-                picture(name, FIGURES[name].of(context.kind), file) for name, file in context.figures.items()
+                picture(name, FIGURES[name].of({context.kind}), file)
+                for name, file in context.figures.items()
             ],
             **_comparison(context.comparison),
             balance=_balance(context.history),
@@ -125,7 +125,7 @@ def _is_number(value: object) -> bool:
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
 
 
-def picture(name: str, spec: FigureSpec | ComparisonFigure | CompressionFigure, file: Path) -> dict[str, str]:
+def picture(name: str, spec: FigureSpec[Any], file: Path) -> dict[str, str]:
     """A figure as the templates take it."""
     number = f"Fig. {spec.number}" if spec.number else ""
     return {

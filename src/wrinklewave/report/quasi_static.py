@@ -10,7 +10,7 @@ import numpy as np
 
 from wrinklewave.environment import versions
 from wrinklewave.experiments.run_folder import write_text
-from wrinklewave.figures.compression import COMPRESSION_FIGURES, CompressionInputs, write_compression_figures
+from wrinklewave.figures.compression import COMPRESSION_FIGURES, CompressionInputs
 from wrinklewave.figures.detections import Detection
 from wrinklewave.imaging.frames import Image
 from wrinklewave.imaging.prepared import open_experiment
@@ -63,7 +63,7 @@ def present_quasi_static(
         description=description,
         outcome=_what_was_done(inputs.test),
         summary=inputs.test.summary,
-        figures=write_compression_figures(folder / "figures", inputs),
+        figures=COMPRESSION_FIGURES.write(folder / "figures", inputs, kinds=()),
         warnings=warnings or inputs.test.warnings,
         case=experiment,
         versions=versions(),

@@ -10,7 +10,7 @@ import numpy as np
 
 from wrinklewave.experiments.bulk_choices import with_bulk_response
 from wrinklewave.experiments.paper_table import Row, as_json, paper_table
-from wrinklewave.figures import FigureInputs, StrainSnapshots, figure_inputs, write_all
+from wrinklewave.figures import FIGURES, FigureInputs, StrainSnapshots, figure_inputs
 from wrinklewave.report.page import ReportContext, write
 from wrinklewave.theory.report import is_papers
 from wrinklewave.theory.report import report as theory_report
@@ -38,7 +38,7 @@ def compare_with_paper(run: Run, summaries: Mapping[str, Mapping[str, Any]]) -> 
 def present(run: Run, comparison: Sequence[Row]) -> None:
     """Write ``figures/``, ``comparison.json`` and ``report.html`` into the folder of a finished run."""
     assert run.folder is not None  # only runs with a folder are presented
-    figures = write_all(run.folder / "figures", inputs_of(run))
+    figures = FIGURES.write(run.folder / "figures", inputs_of(run), kinds={"simulation"})
     (run.folder / "comparison.json").write_text(
         json.dumps(as_json(comparison), indent=2) + "\n", encoding="utf-8"
     )

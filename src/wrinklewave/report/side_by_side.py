@@ -11,7 +11,7 @@ from wrinklewave.config.writing import toml_text
 from wrinklewave.environment import versions
 from wrinklewave.experiments.compare import Comparison, Quantity
 from wrinklewave.experiments.run_folder import write_json, write_text
-from wrinklewave.figures.side_by_side import COMPARISON_FIGURES, write_comparison_figures
+from wrinklewave.figures.side_by_side import COMPARISON_FIGURES, compared_inputs
 from wrinklewave.report.formats import shown, with_sigma
 from wrinklewave.report.page import ReportContext, environment, picture
 
@@ -53,7 +53,9 @@ class TableRow:
 
 def present_comparison(comparison: Comparison, folder: Path) -> Path:
     """Write ``figures/``, ``comparison.json`` and ``report.html`` into a folder; return the report."""
-    figures = write_comparison_figures(folder / "figures", comparison)
+    figures = COMPARISON_FIGURES.write(
+        folder / "figures", compared_inputs(comparison), kinds=_kinds(comparison)
+    )
     write_json(folder / "comparison.json", comparison.as_json())
     report = folder / "report.html"
     write_text(report, comparison_page(comparison, figures))
@@ -62,8 +64,7 @@ def present_comparison(comparison: Comparison, folder: Path) -> Path:
 
 def comparison_page(comparison: Comparison, figures: dict[str, Path]) -> str:
     """The comparison as one HTML page; ``figures`` are PNG files by name."""
-    names = list(comparison.motions)
-    kinds = [motion.subject.kind for motion in comparison.motions.values()]
+    names, kinds = list(comparison.motions), _kinds(comparison)
     context = ReportContext(
         title=" · ".join(names),
         description=f"{names[0]} is the one that the others are held against.",
@@ -84,6 +85,10 @@ def comparison_page(comparison: Comparison, figures: dict[str, Path]) -> str:
             rows=table_rows(comparison.quantities),
         )
     )
+
+
+def _kinds(comparison: Comparison) -> set[str]:
+    return {motion.subject.kind for motion in comparison.motions.values()}
 
 
 def headline_table(comparison: Comparison) -> Table:

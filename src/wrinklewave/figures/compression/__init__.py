@@ -7,16 +7,6 @@ from wrinklewave.figures.compression import (  # noqa: F401 - each registers its
     fig_s3,
     fig_s6,
 )
-from wrinklewave.figures.compression.registry import (
-    COMPRESSION_FIGURES,
-    CompressionFigure,
-    CompressionInputs,
-    write_compression_figures,
-)
+from wrinklewave.figures.compression.inputs import COMPRESSION_FIGURES, CompressionInputs
 
-__all__ = [
-    "COMPRESSION_FIGURES",
-    "CompressionFigure",
-    "CompressionInputs",
-    "write_compression_figures",
-]
+__all__ = ["COMPRESSION_FIGURES", "CompressionInputs"]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wrinklewave.figures.compression.registry import CompressionInputs, compression_figure
+from wrinklewave.figures.compression.inputs import COMPRESSION_FIGURES, CompressionInputs
 from wrinklewave.figures.detections import detections_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@compression_figure(
+@COMPRESSION_FIGURES.figure(
     "fig_1abc_images",
     number="1A-C",
     caption="The side with the film, compressed slowly: below the critical strain, above it, and most of all. Orange: "

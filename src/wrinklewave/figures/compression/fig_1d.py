@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wrinklewave.figures.compression.registry import CompressionInputs, compression_figure
+from wrinklewave.figures.compression.inputs import COMPRESSION_FIGURES, CompressionInputs
 from wrinklewave.figures.style import new_figure
 from wrinklewave.wrinkling.quasi_static import wrinkle_amplitude
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@compression_figure(
+@COMPRESSION_FIGURES.figure(
     "fig_1d_amplitude",
     number="1D",
     caption="Wrinkle amplitude (mean of the Hilbert envelope over the window) against the strain along the arc. "

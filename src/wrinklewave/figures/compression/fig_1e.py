@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.compression.registry import CompressionInputs, compression_figure
+from wrinklewave.figures.compression.inputs import COMPRESSION_FIGURES, CompressionInputs
 from wrinklewave.figures.style import MILLI, new_figure
 from wrinklewave.wrinkling.quasi_static import wrinkle_wavelength
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@compression_figure(
+@COMPRESSION_FIGURES.figure(
     "fig_1e_wavelength",
     number="1E",
     caption="Wavelength on the compressed sample (strongest Fourier component) against the strain along the arc. "

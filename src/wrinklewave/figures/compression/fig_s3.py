@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.compression.registry import CompressionInputs, compression_figure
+from wrinklewave.figures.compression.inputs import COMPRESSION_FIGURES, CompressionInputs
 from wrinklewave.figures.style import (
     MAP_MARGINS,
     MILLI,
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@compression_figure(
+@COMPRESSION_FIGURES.figure(
     "fig_s3_margins",
     number="S3",
     caption="Local amplitude of the wrinkles over position in the undeformed sample and strain. Lines: where it first "

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from wrinklewave.figures.compression.registry import CompressionInputs, compression_figure
+from wrinklewave.figures.compression.inputs import COMPRESSION_FIGURES, CompressionInputs
 from wrinklewave.figures.style import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@compression_figure(
+@COMPRESSION_FIGURES.figure(
     "fig_s6_repetition",
     number="S6",
     caption="Wrinkle amplitude against strain in two tests on the same sample, and the second's over the first's where "

@@ -6,10 +6,6 @@ from wrinklewave.figures.side_by_side import (  # noqa: F401, I001 - each regist
     boundary,
     wrinkles,
 )
-from wrinklewave.figures.side_by_side.registry import (
-    COMPARISON_FIGURES,
-    ComparisonFigure,
-    write_comparison_figures,
-)
+from wrinklewave.figures.side_by_side.inputs import COMPARISON_FIGURES, compared_inputs
 
-__all__ = ["COMPARISON_FIGURES", "ComparisonFigure", "write_comparison_figures"]
+__all__ = ["COMPARISON_FIGURES", "compared_inputs"]

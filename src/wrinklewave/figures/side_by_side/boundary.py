@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.side_by_side.inputs import ComparedInputs
-from wrinklewave.figures.side_by_side.registry import comparison_figure
+from wrinklewave.figures.side_by_side.inputs import COMPARISON_FIGURES, ComparedInputs
 from wrinklewave.figures.style import COLOURS, MILLI, Margins, new_figure
 
 if TYPE_CHECKING:
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 SHOWN_BANDWIDTHS = 4.0
 
 
-@comparison_figure(
+@COMPARISON_FIGURES.figure(
     "side_2d_boundary",
     number="2D",
     caption="Motion of the struck end over the common times, and the magnitude of its Fourier transform over its "

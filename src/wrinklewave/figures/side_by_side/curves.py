@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from wrinklewave.figures.side_by_side.inputs import ComparedInputs
-from wrinklewave.figures.side_by_side.registry import comparison_figure
+from wrinklewave.figures.side_by_side.inputs import COMPARISON_FIGURES, ComparedInputs
 from wrinklewave.figures.style import COLOURS, MILLI, Margins, new_figure, panel_letter
 
 if TYPE_CHECKING:
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-@comparison_figure(
+@COMPARISON_FIGURES.figure(
     "side_3_curves",
     number="3",
     caption="Out-of-plane displacement, wrinkles included, (A) against time at fixed laboratory positions, (B) "

@@ -1,4 +1,4 @@
-"""What figures of a comparison are drawn from."""
+"""What figures of a comparison are drawn from, and the registry of these figures."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.figures.inputs import FigureInputs
+from wrinklewave.figures.registry import Registry
 
 if TYPE_CHECKING:
     from wrinklewave.experiments.compare import Comparison
@@ -40,6 +41,9 @@ class ComparedInputs:
             (name, motion, LINE_STYLES[number % len(LINE_STYLES)])
             for number, (name, motion) in enumerate(self.motions.items())
         ]
+
+
+COMPARISON_FIGURES: Registry[ComparedInputs] = Registry()
 
 
 def compared_inputs(comparison: Comparison) -> ComparedInputs:

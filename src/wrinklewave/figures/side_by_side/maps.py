@@ -9,8 +9,7 @@ import numpy as np
 
 from wrinklewave.figures.inputs import FigureInputs
 from wrinklewave.figures.overlays import draw_boundary, draw_material_points, draw_speed, frame
-from wrinklewave.figures.side_by_side.inputs import ComparedInputs
-from wrinklewave.figures.side_by_side.registry import comparison_figure
+from wrinklewave.figures.side_by_side.inputs import COMPARISON_FIGURES, ComparedInputs
 from wrinklewave.figures.style import Margins, colour_bar, legend_above, new_figure, space_time_map
 
 if TYPE_CHECKING:
@@ -25,10 +24,10 @@ PANEL_MARGINS = Margins(right=0.95, top=0.85, between_columns=0.7, between_rows=
 DIFFERENCE_MARGINS = Margins(right=0.95, top=0.4, between_columns=0.7, between_rows=0.9)
 
 
-@comparison_figure(
+@COMPARISON_FIGURES.figure(
     "side_2c_displacement",
     number="2A to 2C",
-    of_tests="S1",
+    measured=("side_2c_displacement", "S1"),
     caption="Out-of-plane displacement of the surface, wrinkles included, over the maximum of the first surface "
     "motion (scale cut at -0.25). Dashed red: struck end; white: wavefront, free line (dashed) and line through "
     "the origin (dotted); dash-dotted: paths of material points.",
@@ -50,7 +49,7 @@ def displacement_maps(inputs: ComparedInputs) -> Figure:
     return drawing
 
 
-@comparison_figure(
+@COMPARISON_FIGURES.figure(
     "side_4b_wrinkles",
     number="4A and 4B",
     caption="Out-of-plane surface wrinkling after removal of the low-frequency pulse. Magenta: the wrinkle front "
@@ -75,7 +74,7 @@ def wrinkle_maps(inputs: ComparedInputs) -> Figure:
     return drawing
 
 
-@comparison_figure(
+@COMPARISON_FIGURES.figure(
     "side_misfit",
     number="",
     caption="Displacement without wrinkles less that of the first surface motion, on the common times and "

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from wrinklewave.figures.side_by_side.inputs import ComparedInputs
-from wrinklewave.figures.side_by_side.registry import comparison_figure
+from wrinklewave.figures.side_by_side.inputs import COMPARISON_FIGURES, ComparedInputs
 from wrinklewave.figures.style import COLOURS, MILLI, Margins, colour_bar, new_figure, outlined
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ LEAST_RANGE = 0.02
 """Ratios are shown from at least this much below one to this much above."""
 
 
-@comparison_figure(
+@COMPARISON_FIGURES.figure(
     "side_5b_amplitude",
     number="5B",
     caption="Wrinkle amplitude (mean of the Hilbert envelope over the window) and wavelength (strongest in the "
@@ -66,7 +65,7 @@ def amplitude_and_wavelength(inputs: ComparedInputs) -> Figure:
     return drawing
 
 
-@comparison_figure(
+@COMPARISON_FIGURES.figure(
     "side_5d_wavelength",
     number="5C and 5D",
     caption="Spectra of the wrinkles in the window against time, over the maximum of the first surface motion. "
