@@ -10,10 +10,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from wrinklewave.analysis.analyse import analyse
-from wrinklewave.analysis.boundary import boundary_spectrum, contact_time, separation_time, stop_time
+from wrinklewave.analysis.boundary import (
+    boundary_spectrum,
+    contact_time,
+    moved,
+    separation_time,
+    stop_time,
+)
 from wrinklewave.analysis.filters import low_pass
-from wrinklewave.analysis.fronts import arrival_times, fit_speed, rise_time
-from wrinklewave.analysis.strain import arc_length_strain, strain_rate
+from wrinklewave.analysis.fronts import ahead_of_front, arrival_times, fit_speed, rise_time
+from wrinklewave.analysis.strain import arc_length_strain, arc_positions, strain_rate
 from wrinklewave.analysis.wrinkles import (
     amplitude_envelope,
     analytic_signal,
@@ -50,6 +56,27 @@ def test_travelling_pulse_gives_its_numbers_back(front_speed: float, wrinkle_spe
     assert result.wrinkles.amplitude[settled:] == pytest.approx(motion.amplitude, rel=1e-2)
     wavelength = motion.wavelength * (1 - motion.travel / motion.length)
     assert result.wrinkles.spectra.peak[settled:] == pytest.approx(wavelength, rel=3e-3)
+
+
+def test_strain_along_the_arc_is_that_of_the_surface_without_wrinkles() -> None:
+    motion = TravellingPulse(height=3e-3, rise_time=0.5e-3)
+    surface = motion.surface()
+    exact = arc_length_strain(surface["x"], surface["y_smooth"], surface["x_boundary"], length=motion.length)
+    found = analyse(surface, SETTINGS).pulse.arc_strain
+    assert exact.max() > 0.1
+    np.testing.assert_allclose(found, exact, atol=1e-3)
+
+
+def test_onset_is_the_first_wrinkle_beyond_the_filters_reach_of_the_struck_end() -> None:
+    """It comes at the time of the front, 5 mm (the cut-off) from the end that has moved on meanwhile."""
+    motion = TravellingPulse()
+    result = analyse(motion.surface(), SETTINGS)
+    onset = result.wrinkles.onset
+    assert onset.distance == pytest.approx(SETTINGS.filter_wavelength, abs=PIXEL)
+    end = min(motion.velocity * onset.time, motion.travel)
+    assert onset.position - onset.distance == pytest.approx(end, abs=1e-9)
+    front = result.wrinkles.front
+    assert onset.time == pytest.approx(front.intercept + onset.position / front.speed, rel=0.1)
 
 
 def test_wrinkles_at_material_points_run_ahead_of_the_laboratory() -> None:
@@ -172,6 +199,25 @@ def test_arrivals_are_interpolated_across_gaps() -> None:
     np.testing.assert_allclose(arrival, [1.0, np.nan, np.nan])  # never, and beyond it from the start
 
 
+def test_uncertainty_of_a_speed_of_few_independent_arrivals_is_the_textbooks() -> None:
+    """Residuals of alternating sign do not correlate: sigma^2 = r.r/(n - 2) (D^T D)^-1, as in scipy's regression."""
+    from scipy.stats import linregress
+
+    x = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
+    times = 0.1 * x + np.array([0.01, -0.02, 0.01, -0.02, 0.02])
+    fit, line = fit_speed(x, times, window=(0.0, 4.0)), linregress(x, times)
+    assert fit.speed == pytest.approx(1 / line.slope, rel=1e-9)
+    assert fit.speed_sigma == pytest.approx(line.stderr / line.slope**2, rel=1e-9)
+
+
+def test_values_ahead_of_a_front_are_those_of_its_arrival() -> None:
+    """A field t + 10 x, 2 ahead of a front of speed 1: x + 10 (x + 2), up to the end of the grid."""
+    x, time = np.arange(1.0, 11.0), np.linspace(0.0, 12.0, 121)
+    front = fit_speed(x, x, window=(3.0, 10.0))
+    values = ahead_of_front(time, x, time[:, None] + 10 * x, front, distance=2.0)
+    np.testing.assert_allclose(values, [at + 10 * (at + 2) for at in (3, 4, 5, 6, 7, 8)])
+
+
 def test_rise_time_of_a_ramp() -> None:
     time = np.linspace(0.0, 2.0, 201)
     assert rise_time(time, np.clip(time, 0.0, 1.0)) == pytest.approx(0.8, abs=1e-9)
@@ -269,6 +315,22 @@ def test_spectrum_of_an_oscillating_end_peaks_at_its_frequency() -> None:
     assert spectrum.magnitude.max() == 1.0
 
 
+def test_bandwidth_of_a_decay() -> None:
+    """exp(-t/T) has the magnitude 1/sqrt(1 + (2 pi f T)^2), a tenth of the largest at 2 pi f T = sqrt(99)."""
+    decay = 1e-3
+    time = 5e-3 + np.arange(0.0, 12e-3, 4e-6)
+    lost = np.delete(np.arange(time.size), [700, 701, 1500])  # frames, bridged
+    spectrum = boundary_spectrum(time[lost], np.exp(-(time[lost] - time[0]) / decay))
+    assert spectrum.bandwidth == pytest.approx(np.sqrt(99) / (2 * np.pi * decay), rel=0.02)
+    expected = 1 / np.hypot(1, 2 * np.pi * spectrum.frequency * decay)
+    low = spectrum.frequency < 3e3
+    np.testing.assert_allclose(spectrum.magnitude[low], expected[low], atol=3e-3)
+
+
+def test_the_end_moves_from_where_it_was_first_seen() -> None:
+    np.testing.assert_array_equal(moved([np.nan, 2.0, np.nan, 2.5]), [np.nan, 0.0, np.nan, 0.5])
+
+
 def test_contact_stop_and_separation() -> None:
     time = np.linspace(0.0, 2e-3, 201)
     displacement = 5.0 * time  # 50 um after 10 us; 6.3 mm after 1.26 ms; 50 um more after 1.27 ms
@@ -298,6 +360,19 @@ def test_arc_strain_of_a_flat_surface_is_that_of_its_ends() -> None:
     height[1, 400:500] = np.nan
     np.testing.assert_allclose(
         arc_length_strain(x, height, [0.0, 5.01e-3], length=50e-3), [0.0, 0.1002], atol=1e-12
+    )
+
+
+@given(slope=st.floats(-2.0, 2.0), first=st.integers(0, 20), last=st.integers(30, 49))
+def test_arc_of_an_incline_runs_to_its_ends(slope: float, first: int, last: int) -> None:
+    """What was not seen at the ends and in between continues straight."""
+    x = np.linspace(1.0, 3.0, 50)
+    height = slope * x
+    height[:first] = height[last:] = height[24:27] = np.nan
+    positions, length = arc_positions(x, height, start=0.9, end=3.2)
+    assert length == pytest.approx(np.hypot(1, slope) * 2.3)
+    np.testing.assert_allclose(
+        positions, np.where(np.isfinite(height), np.hypot(1, slope) * (x - 0.9), np.nan), rtol=1e-12
     )
 
 

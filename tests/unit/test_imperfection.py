@@ -48,6 +48,23 @@ def test_random_imperfection_has_the_mean_square_of_a_sinusoid_of_its_amplitude(
     np.testing.assert_array_equal(height, imperfection_height(random(seed), X))
 
 
+def test_a_bump_is_a_gaussian() -> None:
+    X = 5e-3 + 0.5e-3 * np.array([-2.0, 0.0, 1.0])
+    np.testing.assert_allclose(imperfection_height(BUMP, X), 30e-6 * np.exp([-2.0, 0.0, -0.5]), rtol=1e-9)
+
+
+@pytest.mark.parametrize(("imperfection", "reached"), [(SINUSOIDAL, 2e-3), (random(1), 4e-3), (BUMP, 4e-3)])
+def test_the_shift_dies_out_within_the_longest_wavelength(imperfection, reached: float) -> None:
+    """As the square of the distance from that depth; within a shallow block, at its bottom."""
+    flat = film_on_block()
+    for depth in (reached + 0.5e-3, reached - 0.5e-3):
+        mesh = with_imperfection(flat, imperfection, interface=4e-3, depth=depth)
+        left = np.clip(1 - (4e-3 - flat.Y) / min(reached, depth), 0.0, 1.0)
+        np.testing.assert_allclose(
+            mesh.Y - flat.Y, left**2 * imperfection_height(imperfection, flat.X), atol=1e-17
+        )
+
+
 def test_random_imperfection_is_band_limited() -> None:
     X = np.arange(0.0, 1.0, 0.1e-3)
     spectrum = np.abs(np.fft.rfft(imperfection_height(random(3), X) * np.hanning(X.size))) ** 2
@@ -84,6 +101,25 @@ def test_layers_of_a_bilayer() -> None:
     assert heights[-1] / heights[0] == pytest.approx(0.1)
 
 
-def test_coarse_meshes_are_warned_about() -> None:
-    with pytest.warns(UserWarning, match="along the film"):
-        warn_if_coarse(film_on_block(), 1.5e-3)
+def test_a_film_may_end_before_the_block() -> None:
+    mesh = bilayer(
+        length=10.0, bottom=0.0, top=5.0, thickness=0.5, columns=40, substrate_rows=4, film_rows=2,
+        end_gap=1.6, grading=(2.0, 1.0),
+    )  # fmt: skip
+    middles = 0.5 * (mesh.X[0, 1:] + mesh.X[0, :-1])
+    assert mesh.shape == (6, 40)
+    assert mesh.n_elements == 240
+    np.testing.assert_array_equal(mesh.layer[4:] == FILM, np.broadcast_to(middles < 8.4, (2, 40)))
+    assert (mesh.layer[:4] == SUBSTRATE).all()
+
+
+def test_coarse_meshes_are_warned_about(recwarn: pytest.WarningsRecorder) -> None:
+    """Elements of 0.1 mm along the film, and of 0.061 mm just below it: enough for wrinkles of 1.6 mm and more."""
+    mesh = film_on_block()
+    below = np.diff(mesh.Y[:, 0])[19]
+    warn_if_coarse(mesh, 1.6e-3)
+    assert not recwarn.list
+    with pytest.warns(UserWarning, match="along the film are 0.1 mm, 15.9 per wrinkle"):
+        warn_if_coarse(mesh, 1.59e-3)
+    with pytest.warns(UserWarning, match="just below the film"):
+        warn_if_coarse(mesh, 15.9 * below)

@@ -69,11 +69,34 @@ def test_a_rising_curve_is_interpolated_and_its_fields_return(
     np.testing.assert_allclose(back, 3.0 * X - 1.0, atol=slope * (x[1] - x[0]))
 
 
+positions = st.lists(st.integers(0, 1000).map(lambda n: 1e-3 * n), min_size=2, max_size=9, unique=True)
+
+
+@given(x_curve=positions, heights=st.lists(st.floats(-1.0, 1.0), min_size=9, max_size=9))
+def test_a_surface_looks_the_same_whichever_end_it_is_followed_from(
+    x_curve: list[float], heights: list[float]
+) -> None:
+    """Folded at will; seen as high as the highest of its straight stretches."""
+    curve, y, x = np.array(x_curve), np.array(heights[: len(x_curve)]), np.linspace(-0.1, 1.1, 61)
+    seen = visible_height(curve[None], y[None], x, [-1.0])[0]
+    backwards = visible_height(curve[None, ::-1], y[None, ::-1], x, [-1.0])[0]
+    np.testing.assert_allclose(backwards, seen, atol=1e-9)
+    stretches = []
+    for a, b, y_a, y_b in zip(curve[:-1], curve[1:], y[:-1], y[1:], strict=True):
+        share = (x - a) / (b - a)
+        stretches.append(np.where((share >= 0.0) & (share <= 1.0), y_a + share * (y_b - y_a), -np.inf))
+    highest = np.max(stretches, axis=0)
+    inside = np.isfinite(seen) & np.isfinite(highest)  # rounding decides about the very ends
+    assert np.isfinite(seen).sum() == pytest.approx(np.isfinite(highest).sum(), abs=2)
+    np.testing.assert_allclose(seen[inside], highest[inside], atol=1e-9)
+
+
 def test_curve_through_points_of_a_circle_has_its_normals() -> None:
     """Cubic splines: position to fourth order in the step, tangent to third."""
     X = np.linspace(0.3, 2.8, 40)
-    curve = surface_curve(X, -np.cos(X)[None], np.sin(X)[None], spacing=0.01)
-    assert np.diff(curve.X).max() < 0.0101
+    curve = surface_curve(X, -np.cos(X)[None], np.sin(X)[None], spacing=0.013)
+    assert curve.X[[0, -1]] == pytest.approx(X[[0, -1]])
+    assert 0.0125 < np.diff(curve.X).max() <= 0.013
     step = X[1] - X[0]
     np.testing.assert_allclose(curve.x[0], -np.cos(curve.X), atol=step**4)
     np.testing.assert_allclose(curve.normal_x[0], -np.cos(curve.X), atol=step**3)

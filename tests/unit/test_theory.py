@@ -16,6 +16,7 @@ from wrinklewave.config import case_from_text, load_case
 from wrinklewave.errors import InputError
 from wrinklewave.materials.moduli import bulk_modulus, plane_strain_modulus, plane_wave_modulus
 from wrinklewave.theory import viscoelasticity, waves, wrinkling
+from wrinklewave.theory.constants import Constants
 from wrinklewave.theory.film import critical_values, film_material, film_shear_modulus
 from wrinklewave.theory.report import report
 
@@ -75,6 +76,12 @@ def test_rayleigh_speed_solves_rayleighs_equation(nu: float) -> None:
 
     x = brentq(rayleigh, 0.1, 1 - 1e-12, xtol=1e-14)
     assert waves.rayleigh_speed(1.0, K, 1.0) == pytest.approx(math.sqrt(x), rel=1e-9)
+
+
+@given(positive, positive)
+def test_rayleigh_speed_scales_with_the_shear_speed(mu: float, rho: float) -> None:
+    unit = waves.rayleigh_speed(1.0, bulk_modulus(1.0, 0.3), 1.0)
+    assert waves.rayleigh_speed(mu, bulk_modulus(mu, 0.3), rho) == pytest.approx(unit * math.sqrt(mu / rho))
 
 
 @given(st.complex_numbers(min_magnitude=1, max_magnitude=1e9), positive, positive)
@@ -216,6 +223,48 @@ def test_measured_values_go_before_derived_ones() -> None:
     case = case_from_text(FILM.format(film=film))
     assert case.film is not None
     assert critical_values(case.film, case.substrate) == (0.05, 2e-3)
+
+
+def test_what_was_not_measured_is_derived() -> None:
+    moduli = 'shear_modulus = "1 MPa"'
+    derived, strain, wavelength = (
+        case_from_text(FILM.format(film=f"{moduli}\n{measured}"))
+        for measured in ("", "critical_strain = 0.05", 'critical_wavelength = "2 mm"')
+    )
+    both = critical_values(derived.film, derived.substrate)
+    assert critical_values(strain.film, strain.substrate) == (0.05, both[1])
+    assert critical_values(wavelength.film, wavelength.substrate) == (both[0], 2e-3)
+
+
+def test_numbers_of_the_film_in_the_report() -> None:
+    """By hand: E_f = 2.6 MPa / 0.91, E_s = 127.6 kPa / 0.7975, h = 0.1 mm, H = 20 mm, strain 0.1."""
+    film = 'shear_modulus = "1 MPa"\ncritical_strain = 0.05\ncritical_wavelength = "2 mm"'
+    numbers = {number.name: number.value for number in report(case_from_text(FILM.format(film=film)))}
+    E_f, E_s = 2.6e6 / 0.91, 127.6e3 / 0.7975
+    kh = np.linspace(0.1, 1.5, 100_001)
+    w = kh / 0.1e-3 * 10e-3  # a substrate of half the height, on a plane of symmetry
+    springs = E_s / 2 * (np.sinh(2 * w) + 2 * w) / (np.cosh(2 * w) - 1)
+    for name, value in (
+        ("critical strain from the moduli", (3 * E_s / E_f) ** (2 / 3) / 4),
+        ("critical strain from the moduli, finite depth", (kh**2 / 12 + springs / (E_f * kh)).min()),
+        ("critical strain from the moduli, no plane strain", (3 * 127.6e3 / 2.6e6) ** (2 / 3) / 4),
+        ("critical strain from the measured wavelength", (math.pi * 0.1 / 2) ** 2),
+    ):
+        assert numbers[name] == pytest.approx(value, rel=1e-8), name
+
+
+def test_times_of_a_solid_with_several_terms() -> None:
+    """The relaxation time that counts is the shortest, the creep time the longest."""
+    case = load_case(ROOT / "examples" / "paper_impact.toml")
+    terms = [{"shear_modulus": "1 MPa", "relaxation_time": time} for time in ("2 ms", "50 us", "1 ms")]
+    prony = ", ".join(
+        "{" + ", ".join(f"{key} = '{text}'" for key, text in term.items()) + "}" for term in terms
+    )
+    constants = Constants(case.overridden(f"substrate.prony=[{prony}]"))
+    assert constants.tau == 50e-6
+    creep = viscoelasticity.retardation_times(44e3, [1e6] * 3, [2e-3, 50e-6, 1e-3])
+    assert constants.retardation_time == pytest.approx(creep[-1])
+    assert creep[-1] > 2e-3 > creep[0]
 
 
 def test_film_without_modulus() -> None:

@@ -84,6 +84,31 @@ def test_radians_per_second_are_no_frequency() -> None:
         units.parse("400 rad/s", FREQUENCY)
 
 
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (131120.0, "Pa", "131.1 kPa"),
+        (4.55e-5, "s", "45.50 us"),
+        (-2e-3, "m", "-2.000 mm"),
+        (0.125, "1", "0.1250"),
+        (57.0, "m/s", "57.00 m/s"),  # no prefixes in compound units
+        (123456.0, "kg/m^3", "123456 kg/m^3"),  # all digits before the point
+        (0.0, "m", "0.000 m"),
+        (3e-14, "m", "3.000e-05 nm"),  # beyond the prefixes
+        (7.5e13, "Hz", "75000 GHz"),
+    ],
+)
+def test_engineering_notation(value: float, unit: str, text: str) -> None:
+    assert units.engineering(value, unit) == text
+
+
+@given(st.floats(1e-9, 0.99e12), st.sampled_from([LENGTH, TIME, PRESSURE, FREQUENCY]))
+def test_engineering_notation_reads_back(value: float, dimension: units.Dimension) -> None:
+    text = units.engineering(value, dimension.si, digits=None)
+    assert 1.0 <= float(text.split()[0]) < 1000.0
+    assert units.parse(text, dimension) == pytest.approx(value, rel=1e-15)
+
+
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_si_text_reads_back_to_the_same_float(value: float) -> None:
     assert units.parse(units.format_si(value, PRESSURE), PRESSURE) == value

@@ -10,7 +10,7 @@ import pytest
 from wrinklewave.config import load_case
 from wrinklewave.experiments.wrinkle_seeds import BANDS, wrinkle_seeds
 from wrinklewave.mesh.imperfection import imperfection_height
-from wrinklewave.wrinkling.seeds import of_height, shared_evenly
+from wrinklewave.wrinkling.seeds import FAINTEST, Seeds, of_height, of_one_wave, shared_evenly
 
 CASE = Path(__file__).parents[2] / "examples" / "paper_resolved.toml"
 RATE_DEPENDENT = "wrinkles.model=rate-dependent"
@@ -20,12 +20,27 @@ X = np.linspace(5e-3, 45e-3, 161)
 
 
 def test_bands_share_a_height_and_give_it_back() -> None:
-    along, k = np.linspace(0.0, 50e-3, 2001), 2 * np.pi * np.array([600.0, 700.0])
-    height = 3e-6 * np.cos(k[0] * along) - 2e-6 * np.cos(k[1] * along)
+    """Whole half waves along the film: each is one component of the cosine transform, and exact."""
+    start, k = -2e-3, 2 * np.pi * np.array([600.0, 720.0])
+    along = start + np.linspace(0.0, 50e-3, 2001)
+    height = 3e-6 * np.cos(k[0] * (along - start)) - 2e-6 * np.cos(k[1] * (along - start))
     seeds = of_height(along, height, 1 / np.linspace(500.0, 800.0, 4), X)
-    expected = 3e-6 * np.exp(1j * k[0] * X) - 2e-6 * np.exp(1j * k[1] * X)
-    np.testing.assert_allclose(seeds.waves.sum(axis=1), expected, atol=1e-8)
-    np.testing.assert_allclose(np.abs(seeds.waves[:, 1]), 3e-6, rtol=0.01)
+    one, other = 3e-6 * np.exp(1j * k[0] * (X - start)), -2e-6 * np.exp(1j * k[1] * (X - start))
+    np.testing.assert_allclose(
+        seeds.waves, np.outer(one, [0, 1, 0, 0]) + np.outer(other, [0, 0, 0.8, 0.2]), atol=1e-16
+    )
+
+
+def test_a_single_wave_is_a_cosine() -> None:
+    np.testing.assert_allclose(
+        of_one_wave(5e-6, 2e-3, X).waves[:, 0].real, 5e-6 * np.cos(2 * np.pi * X / 2e-3), atol=1e-17
+    )
+
+
+def test_faint_waves_are_raised_and_keep_their_phase() -> None:
+    waves = np.array([[1.0 + 1.0j, 1e-9j], [-0.5, 0.0]])
+    audible, least = Seeds(np.array([2e-3, 1e-3]), waves).audible, FAINTEST * np.sqrt(2)
+    np.testing.assert_allclose(audible, [[1.0 + 1.0j, 1j * least], [-0.5, least]], atol=1e-15)
 
 
 def test_wrinkles_that_have_not_grown_are_the_imperfection() -> None:
@@ -34,6 +49,7 @@ def test_wrinkles_that_have_not_grown_are_the_imperfection() -> None:
     height = (together * np.exp(2j * np.pi / 2e-3 * X)).real
     np.testing.assert_allclose(height, seeds.waves.real.sum(axis=1), atol=1e-12)
     assert np.sqrt(2 * (height**2).mean()) == pytest.approx(10e-6, rel=0.1)
+    assert np.abs(height).max() < 0.75 * np.sqrt(7) * 10e-6  # what all waves in phase would add up to
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from support.layers import MU_0, RATIO, THICKNESS, solid
 from support.ledger import Verified
 from support.references import reference
 from wrinklewave.errors import InputError
-from wrinklewave.theory.bifurcation import bifurcation, critical_strain, matching_film
+from wrinklewave.theory.bifurcation import bifurcation, critical_strain, matching_film, surface_stiffness
 from wrinklewave.theory.growth import fastest_growth, growth_rate
 from wrinklewave.theory.incremental import (
     block_stiffness,
@@ -83,6 +83,21 @@ def test_block_on_a_slipping_base(depth: float, verified: Verified) -> None:
     )
 
 
+@pytest.mark.parametrize("depth", [np.inf, 3e-3])
+def test_a_film_like_its_substrate_only_makes_it_deeper(depth: float, verified: Verified) -> None:
+    """Of the same material, on depth d, film and substrate are a block of the depth d + h."""
+    strain, k = 0.2, 700.0
+    below = stroh_matrix(prestressed_layer(solid(), 1 - strain, unit=MU_0), k)
+    whole = (
+        half_space_stiffness(below) if np.isinf(depth) else block_stiffness(below, k * (depth + THICKNESS))
+    )
+    found = surface_stiffness(solid(), solid(), strain, k, thickness=THICKNESS, depth=depth)
+    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        verified.value(
+            f"Z_{i + 1}{j + 1} of a divided block, depth {depth:g}", found[i, j], whole[i, j], relative=1e-9
+        )
+
+
 def test_stiff_films_wrinkle_as_the_classical_formula_says(verified: Verified) -> None:
     """eps_c -> (3 E_s/E_f)^(2/3)/4 and k h -> (3 E_s/E_f)^(1/3) as E_f/E_s grows; the next term is of order eps_c."""
     ratio = 1e5
@@ -101,6 +116,16 @@ def test_the_matching_film_has_the_measured_critical_strain(verified: Verified) 
     verified.value(
         "critical strain of the matching film", critical_strain(film, solid(), 0.44), 0.043, relative=1e-10
     )
+
+
+def test_the_matching_film_relaxes_in_the_same_proportion() -> None:
+    given_film = solid(3.0, relaxes=True)
+    film = matching_film(given_film, solid(), critical_strain=0.043, wavenumber=0.44)
+    assert film.mu_inf > 2 * given_film.mu_inf
+    for scaled, first in (
+        (film.K_inf, given_film.K_inf), (film.mu_k, given_film.mu_k), (film.K_k, given_film.K_k)
+    ):  # fmt: skip
+        np.testing.assert_allclose(scaled / film.mu_inf, first / given_film.mu_inf, rtol=1e-12)
 
 
 CASES = {

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from support.ledger import Verified
+from wrinklewave.analysis.compression import compression_series
+from wrinklewave.analysis.wrinkles import mean_amplitude
 from wrinklewave.config.recorded import recorded_analysis
 from wrinklewave.experiments.quasi_static_test import QuasiStaticTest, quasi_static_test
 from wrinklewave.wrinkling.quasi_static import wrinkle_amplitude
@@ -104,6 +106,45 @@ def test_stated_uncertainties_hold_under_noise() -> None:
     spread = np.sqrt(np.mean(np.square(reduced), axis=0))
     assert (spread > 0.65).all()  # 60 fits: 9 % by chance, and correlated residuals are counted as fewer
     assert (spread < 1.3).all()
+
+
+def test_a_wavelength_that_drifts_with_the_strain_is_fitted_as_such() -> None:
+    from dataclasses import replace
+
+    from wrinklewave.analysis.compression_fit import fit_compression
+
+    made = SlowCompression()
+    series = analysed(made).first.series
+    drifting = np.where(
+        np.isfinite(series.material_wavelength), made.wavelength * (1 + 0.3 * (series.strain - 0.043)), np.nan
+    )
+    fit = fit_compression(
+        replace(series, amplitude=made.amplitude(series.strain), material_wavelength=drifting)
+    )
+    assert fit is not None
+    assert fit.drift == pytest.approx(0.3, rel=1e-3)
+    assert fit.critical_wavelength == pytest.approx(made.wavelength, rel=1e-5)
+    assert fit.wavelength(np.array([0.02, 0.143])) == pytest.approx(
+        [np.nan, 2e-3 * 1.03 * (1 - 0.143)], rel=1e-4, nan_ok=True
+    )
+
+
+def test_noise_is_taken_off_the_amplitude() -> None:
+    """Gaussian noise of standard deviation s has the mean envelope s sqrt(pi/2); s of displacements is that of the
+    image and of the mean of the undeformed ones."""
+    made = SlowCompression(strains=(0.0, 0.0, 0.0, 0.0, 0.1, 0.15))
+    surface = made.surface()
+    clean, sigma = surface.copy(), np.full(surface["u_y"].shape, 20e-6)
+    sigma[:, ::3] = np.nan
+    surface["u_y_sigma"] = (("time", "x"), sigma, {"units": "m"})
+    settings = recorded_analysis([surface.attrs], [WINDOW])
+    noisy, noiseless = (compression_series(one, settings, undeformed_images=4) for one in (surface, clean))
+    np.testing.assert_array_equal(noiseless.amplitude_noise, 0.0)
+    np.testing.assert_allclose(noisy.amplitude_noise, np.sqrt(np.pi / 2) * 20e-6 / np.sqrt(1.25), rtol=1e-12)
+    raw = mean_amplitude(noiseless.envelope, noiseless.X, window=noiseless.window)[4:]
+    np.testing.assert_allclose(
+        noisy.amplitude[4:], noiseless.amplitude[4:] * np.sqrt(1 - (noisy.amplitude_noise[4:] / raw) ** 2)
+    )
 
 
 def test_strain_is_the_arcs_not_the_ends() -> None:
