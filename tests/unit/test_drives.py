@@ -91,6 +91,33 @@ def test_smoothing_a_measured_history_removes_its_noise():
     assert np.std(error) < 2e-5 / 3  # 10 samples per width: sqrt(2 sqrt(pi) 10) = 6 times less noise
 
 
+@given(share=st.floats(0.0, 2.0))
+def test_compression_is_a_cosine_between_its_knots_too(share):
+    # cubics between 64 knots a half wave: off by (pi/64)^4/384 of the half amplitude at most
+    motion = drives.compression(5e-3, 0.1, unload=True)
+    expected = 2.5e-3 * (1 - np.cos(np.pi * share))
+    assert position(motion, 0.1 * share) == pytest.approx(
+        expected, abs=2.5e-3 * (np.pi / 64) ** 4 / 384 * 1.01
+    )
+
+
+@pytest.mark.parametrize(
+    ("motion", "end"),
+    [
+        (drives.striker(striker()), 6.3e-3),
+        (drives.end_motion(end_motion(0.0)), 9e-3),
+        (drives.end_motion(end_motion(1e-4)), 9e-3),
+        (drives.compression(5e-3, 0.1, unload=False), 5e-3),
+        (drives.measured(np.linspace(0, 1e-3, 50), np.linspace(0, 2e-3, 50), 0.0), 2e-3),
+        (drives.measured(np.linspace(0, 1e-3, 50), np.linspace(0, 2e-3, 50), 2e-5), 2e-3),
+    ],
+)
+def test_what_stops_stays_where_it_is(motion, end):
+    last = motion[-1, 0]
+    expected = pytest.approx([end] * 4, abs=2e-11)  # smoothed ones leave off at 5 standard deviations
+    assert at(motion, last + np.array([0.0, 0.3, 0.8, 2.0])) == expected
+
+
 def test_compression_returns():
     motion = drives.compression(5e-3, 0.1, unload=True)
     assert at(motion, [0.0, 0.05, 0.1, 0.2, 0.3]) == pytest.approx([0, 2.5e-3, 5e-3, 0, 0], abs=1e-9)
