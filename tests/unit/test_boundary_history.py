@@ -45,16 +45,33 @@ def test_history_starts_at_contact_and_counts_from_rest(X: tuple[float, ...]) ->
     np.testing.assert_allclose(found["u_y_m"], (1.0 + 0.2) * t, atol=1e-9)
 
 
-def test_a_wrinkle_at_the_corner_is_no_motion_of_the_end() -> None:
+@pytest.mark.parametrize(("phase", "curvature"), [(0.0, 0.0), (1.0, 0.0), (2.5, 3.0)])
+def test_a_wrinkle_at_the_corner_is_no_motion_of_the_end(phase: float, curvature: float) -> None:
     time = np.arange(-5, 50) * 20e-6
     surface = tilted(time, (4e-3,))
     surface.attrs["critical_wavelength"] = 2e-3
     distance = (surface["x"] - surface["x_boundary"]).transpose("time", "x").values
-    crest = 0.2e-3 * np.cos(2 * np.pi * distance / 1.78e-3)
+    crest = 0.2e-3 * np.cos(2 * np.pi * distance / 1.78e-3 + phase) + curvature * distance**2
     for name in ("y", "u_y"):
         surface[name].values += np.where(time[:, None] > 0.0, crest, 0.0)
     found = boundary_columns(surface)
     np.testing.assert_allclose(found["u_y_m"], 1.2 * found["time_s"], atol=0.01e-3)
+
+
+def test_a_curved_surface_is_continued_by_the_slope_that_it_has_at_the_end() -> None:
+    """A straight line through half a millimetre misses 3/m x^2 by a sixth of 3/m (0.5 mm)^2, and grid points."""
+    surface = tilted(np.arange(-5, 50) * 20e-6, (4e-3,))
+    distance = (surface["x"] - surface["x_boundary"]).transpose("time", "x").values
+    surface["u_y"].values += np.where(surface["time"].values[:, None] > 0.0, 3.0 * distance**2, 0.0)
+    found = boundary_columns(surface)
+    np.testing.assert_allclose(found["u_y_m"], 1.2 * found["time_s"], atol=0.25e-6)
+
+
+def test_without_a_time_of_rest_the_first_place_seen_counts() -> None:
+    surface = tilted(np.arange(0, 50) * 20e-6, (0.0, 4e-3))
+    surface["x_boundary"][:3] = np.nan
+    found = boundary_columns(surface)
+    np.testing.assert_allclose(found["u_x_m"], np.maximum(2.0 * (found["time_s"] - 60e-6), 0.0), atol=1e-12)
 
 
 def test_history_starts_at_a_contact_between_frames() -> None:

@@ -109,6 +109,16 @@ def test_amplitude_and_misfit_are_what_was_made() -> None:
     assert row(found, "wavefront_speed_m_per_s").values == pytest.approx([SPEED] * 3, rel=0.02)
 
 
+def test_misfit_is_stated_over_the_largest_displacement() -> None:
+    """A pulse 5 % higher: the misfit is a twentieth of the first's displacement, wherever both are known."""
+    agreement = compared(made(amplitude=0.0), made(amplitude=0.0, pulse=1.05e-3)).agreements["1"]
+    rms = np.sqrt(np.nanmean(agreement.misfit**2))
+    assert agreement.misfit_rms == pytest.approx(rms)
+    assert agreement.misfit_share == pytest.approx(0.05 * rms / np.nanmax(np.abs(agreement.misfit)), rel=1e-6)
+    assert agreement.compared_share == np.isfinite(agreement.misfit).mean()
+    assert 0.9 < agreement.compared_share < 1.0  # not where the struck end has been
+
+
 @given(
     st.floats(-1, 1),
     st.floats(-1, 1),

@@ -21,9 +21,10 @@ from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.errors import InputError
 from wrinklewave.experiments import frame_blocks
 from wrinklewave.experiments import measure as measuring
-from wrinklewave.experiments.frame_blocks import FrameBlock, measure_block
+from wrinklewave.experiments.frame_blocks import FrameBlock, MeasuringProgress, measure_block
 from wrinklewave.experiments.interruption import Outcome
-from wrinklewave.experiments.measure import MeasuringProgress, learn, measure
+from wrinklewave.experiments.learning import learn
+from wrinklewave.experiments.measure import measure
 from wrinklewave.imaging.camera import Camera, Levels, Striker, Wires, film
 from wrinklewave.imaging.frame_measuring import FrameMeasurer
 from wrinklewave.imaging.frames import ArraySource, FrameSource, Image

@@ -84,7 +84,7 @@ def test_block_on_a_slipping_base(depth: float, verified: Verified) -> None:
 
 
 @pytest.mark.parametrize("depth", [np.inf, 3e-3])
-def test_a_film_like_its_substrate_only_makes_it_deeper(depth: float, verified: Verified) -> None:
+def test_a_film_like_its_substrate_only_makes_it_deeper(depth: float) -> None:
     """Of the same material, on depth d, film and substrate are a block of the depth d + h."""
     strain, k = 0.2, 700.0
     below = stroh_matrix(prestressed_layer(solid(), 1 - strain, unit=MU_0), k)
@@ -92,10 +92,7 @@ def test_a_film_like_its_substrate_only_makes_it_deeper(depth: float, verified: 
         half_space_stiffness(below) if np.isinf(depth) else block_stiffness(below, k * (depth + THICKNESS))
     )
     found = surface_stiffness(solid(), solid(), strain, k, thickness=THICKNESS, depth=depth)
-    for i, j in ((0, 0), (0, 1), (1, 0), (1, 1)):
-        verified.value(
-            f"Z_{i + 1}{j + 1} of a divided block, depth {depth:g}", found[i, j], whole[i, j], relative=1e-9
-        )
+    np.testing.assert_allclose(found, whole, rtol=1e-9)
 
 
 def test_stiff_films_wrinkle_as_the_classical_formula_says(verified: Verified) -> None:

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from wrinklewave.environment import processor
 from wrinklewave.errors import InputError
+from wrinklewave.experiments.interruption import interruptible
 from wrinklewave.experiments.run_folder import write_text
 from wrinklewave.imaging.arrays import Flags, Floats
 from wrinklewave.imaging.boundary import StruckEnd
@@ -19,12 +23,40 @@ from wrinklewave.imaging.frame_measuring import FrameMeasurement, FrameMeasurer
 from wrinklewave.imaging.frames import FrameSource
 from wrinklewave.imaging.wires import WireSightings
 
+if TYPE_CHECKING:
+    from wrinklewave.config.experiment import Experiment
+    from wrinklewave.imaging.prepared import PreparedSource
+
 MOST_FRAMES = 64
 MOST_BYTES = 64e6
 """Frames of a block: at most so many, and no more bytes of grey values (but at least four frames)."""
 
 _SIGHTING = WireSightings._fields
 _LOCKING = ("count", "total", "squares")
+
+
+@dataclass(frozen=True)
+class MeasuringProgress:
+    """Where a measurement is.
+
+    Args:
+        frames: done.
+        n_frames: of the recording.
+        per_second: frames, since it was started or resumed.
+    """
+
+    frames: int
+    n_frames: int
+    per_second: float
+
+    @property
+    def share(self) -> float:
+        """Of the whole that is done."""
+        return self.frames / self.n_frames
+
+    def __str__(self) -> str:
+        left = (self.n_frames - self.frames) / self.per_second if self.per_second > 0 else float("nan")
+        return f"frame {self.frames} of {self.n_frames}, {self.per_second:.0f} frames/s, {left:.0f} s left"
 
 
 @dataclass(frozen=True)
@@ -124,6 +156,10 @@ class BlockStore:
         with np.load(self._file(number)) as arrays:
             return FrameBlock(**arrays)
 
+    def blocks(self, source: FrameSource) -> Iterator[FrameBlock]:
+        """Read all blocks of a recording, one after the other."""
+        return (self.get(number) for number in range(len(block_bounds(source))))
+
     def remove(self) -> None:
         """Delete all blocks, and the folder."""
         for file in self.folder.iterdir():
@@ -148,3 +184,29 @@ def measure_block(
     pending = [(index, pool.submit(measurer.measure, image)) for index, image in source.frames(first, stop)]
     frames = [index for index, _ in pending]
     return FrameBlock.of(frames, [future.result() for _, future in pending], source.shape[1])
+
+
+def origin(experiment: Experiment, source: PreparedSource) -> str:
+    """What measured frames depend on: the experiment file and the recording."""
+    return f"{experiment.to_toml()}\n# {source.n_frames} frames of {source.shape[1]} x {source.shape[0]} px\n"
+
+
+def measure_frames(
+    source: PreparedSource,
+    measurer: FrameMeasurer,
+    store: BlockStore,
+    threads: int | None = None,
+    progress: Callable[[MeasuringProgress], None] = lambda state: None,
+) -> bool:
+    """Measure what is not in the ``store`` yet; False if an interrupt came before the last block."""
+    begin, measured = time.perf_counter(), 0
+    with ThreadPoolExecutor(threads or processor().usable) as pool, interruptible() as wished:
+        for number, (first, stop) in enumerate(block_bounds(source)):
+            if number in store:
+                continue
+            store.put(number, measure_block(source, first, stop, measurer, pool))
+            measured += stop - first
+            progress(MeasuringProgress(stop, source.n_frames, measured / (time.perf_counter() - begin)))
+            if wished() and stop < source.n_frames:
+                return False
+    return True

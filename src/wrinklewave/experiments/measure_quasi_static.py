@@ -13,11 +13,11 @@ from wrinklewave import surface as surfaces
 from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.environment import versions
 from wrinklewave.errors import InputError
-from wrinklewave.experiments.frame_blocks import BlockStore, FrameBlock, block_bounds
+from wrinklewave.experiments.frame_blocks import BlockStore, MeasuringProgress, measure_frames, origin
 from wrinklewave.experiments.interruption import Outcome
-from wrinklewave.experiments.measure import MeasuringProgress, learn, measure_frames, measurement_folder
+from wrinklewave.experiments.learning import learn
 from wrinklewave.experiments.measured_surface import end_track, frame_series, laboratory_grid, write_surface
-from wrinklewave.experiments.measurement_folder import MeasurementFolder
+from wrinklewave.experiments.measurement_folder import opened_folder
 from wrinklewave.experiments.measurement_summary import scale_warnings, surface_attributes
 from wrinklewave.experiments.quasi_static_test import (
     ALL_STRAINS,
@@ -29,7 +29,7 @@ from wrinklewave.experiments.run_folder import write_history
 from wrinklewave.imaging.calibration import PixelMap, calibrate
 from wrinklewave.imaging.frame_measuring import FrameMeasurer
 from wrinklewave.imaging.inspection import grey_warnings, histogram
-from wrinklewave.imaging.prepared import open_experiment
+from wrinklewave.imaging.prepared import PreparedSource, named_as_in_the_recording, open_experiment
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -106,21 +106,26 @@ def measure_quasi_static(
     experiment = experiment if isinstance(experiment, Experiment) else load_experiment(experiment, overrides)
     if experiment.kind != "quasi-static":
         raise InputError(f'kind = "{experiment.kind}"', key="experiment.kind", expected='"quasi-static"')
-    with measurement_folder(experiment, out, resume, overwrite) as folder:
+    with opened_folder(experiment, out, resume=resume, overwrite=overwrite) as folder:
         kept = Path(out) if out else None
-        series = []
-        for number, one in enumerate(_experiments(experiment)):
-            measured = _measured(one, folder, number, threads, progress)
-            if measured is None:
-                return QuasiStaticMeasurement(experiment, Outcome.INTERRUPTED, folder=kept)
-            series.append(measured)
+        series, stores = [], []
+        for prefix, one in zip(_PREFIXES, _experiments(experiment), strict=False):
+            with open_experiment(one) as source:
+                appearance, _ = learn(one, source)
+                store = folder.blocks(origin(one, source), prefix)
+                measurer = FrameMeasurer(appearance, wires=None, resolution=one.edge.resolution)
+                if not measure_frames(source, measurer, store, threads, progress):
+                    return QuasiStaticMeasurement(experiment, Outcome.INTERRUPTED, folder=kept)
+                surface = folder.path / f"{prefix}surface.nc"
+                series.append(_measured_series(one, source, measurer, store, surface))
+                stores.append(store)
         found = _evaluated(experiment, tuple(series), kept)
         assert found.test is not None
         for number, test in enumerate(found.test.tests):
             write_history(folder.path / f"{_PREFIXES[number]}series.csv", series_columns(test))
         folder.write_summary(found.summary)
-        for number in range(len(series)):
-            folder.blocks(_origin(series[number].experiment), _PREFIXES[number]).remove()
+        for store in stores:
+            store.remove()
     return found
 
 
@@ -136,59 +141,40 @@ def _experiments(experiment: Experiment) -> Iterator[Experiment]:
         yield experiment.model_copy(update=changes)
 
 
-def _measured(
-    experiment: Experiment,
-    folder: MeasurementFolder,
-    number: int,
-    threads: int | None,
-    progress: Callable[[MeasuringProgress], None],
-) -> MeasuredSeries | None:
-    """One series' surfaces, measured and written; None if an interrupt came."""
-    with open_experiment(experiment) as source:
-        appearance, _ = learn(experiment, source)
-        measurer = FrameMeasurer(appearance, wires=None, resolution=experiment.edge.resolution)
-        store = folder.blocks(_origin(experiment), _PREFIXES[number])
-        if not measure_frames(source, measurer, store, threads, progress):
-            return None
-        n_blocks = len(block_bounds(source))
-        frames = frame_series(_blocks(store, n_blocks))
-        if frames.frame.size < FEWEST_IMAGES:
-            raise InputError(
-                f"{frames.frame.size} images that can be read",
-                file=experiment.video.file,
-                expected=f"at least {FEWEST_IMAGES}: the undeformed sample and the sample compressed more and more",
-            )
-        clock = frames.frame.astype(float) if source.times is None else source.times[frames.frame]
-        track = end_track(frames, clock, experiment.video.undeformed_frames, appearance)
+def _measured_series(
+    experiment: Experiment, source: PreparedSource, measurer: FrameMeasurer, store: BlockStore, path: Path
+) -> MeasuredSeries:
+    """One series' surfaces, from measured images, written to ``path``."""
+    appearance = measurer.appearance
+    frames = frame_series(store.blocks(source))
+    if frames.frame.size < FEWEST_IMAGES:
+        raise InputError(
+            f"{frames.frame.size} images that can be read",
+            file=experiment.video.file,
+            expected=f"at least {FEWEST_IMAGES}: the undeformed sample and the sample compressed more and more",
+        )
+    clock = frames.frame.astype(float) if source.times is None else source.times[frames.frame]
+    track = end_track(frames, clock, experiment.video.undeformed_frames, appearance)
+    with named_as_in_the_recording(source):
         pixels = calibrate(experiment, appearance, track.rest)
-        path = folder.path / f"{_PREFIXES[number]}surface.nc"
-        write_surface(
-            path,
-            blocks=_blocks(store, n_blocks),
-            time=clock,
-            track=track,
-            wires=None,
-            series=frames,
-            pixels=pixels,
-            grid=laboratory_grid(appearance, pixels, measurer.finder.resolution),
-            attrs=surface_attributes(experiment, appearance, pixels) | {"procedure": "quasi-static"},
-        )
-        seen = pixels.pixel_size * (appearance.held_end - track.rest) / np.cos(pixels.tilt)
-        warnings = (
-            *source.notes,
-            *grey_warnings(source, histogram(source)),
-            *scale_warnings(experiment, seen),
-        )
-        return MeasuredSeries(experiment, surfaces.read(path), frames.frame, pixels, warnings)
-
-
-def _blocks(store: BlockStore, n_blocks: int) -> Iterator[FrameBlock]:
-    return (store.get(number) for number in range(n_blocks))
-
-
-def _origin(experiment: Experiment) -> str:
-    """What measured images depend on."""
-    return experiment.to_toml()
+    write_surface(
+        path,
+        blocks=store.blocks(source),
+        time=clock,
+        track=track,
+        wires=None,
+        series=frames,
+        pixels=pixels,
+        grid=laboratory_grid(appearance, pixels, measurer.finder.resolution),
+        attrs=surface_attributes(experiment, appearance, pixels) | {"procedure": "quasi-static"},
+    )
+    seen = pixels.pixel_size * (appearance.held_end - track.rest) / np.cos(pixels.tilt)
+    warnings = (
+        *source.notes,
+        *grey_warnings(source, histogram(source)),
+        *scale_warnings(experiment, seen),
+    )
+    return MeasuredSeries(experiment, surfaces.read(path), frames.frame, pixels, warnings)
 
 
 def _evaluated(

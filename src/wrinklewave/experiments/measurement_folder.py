@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -71,3 +74,15 @@ class MeasurementFolder:
         for earlier in ("summary.json", "*surface.nc", "*series.csv", ".*frames/*"):
             for file in self.path.glob(earlier):
                 file.unlink()
+
+
+@contextmanager
+def opened_folder(
+    experiment: Experiment, out: str | Path | None, *, resume: bool, overwrite: bool
+) -> Iterator[MeasurementFolder]:
+    """The folder for the results, or one that is gone afterwards."""
+    if out:
+        yield MeasurementFolder.prepare(Path(out), experiment, resume=resume, overwrite=overwrite)
+        return
+    with tempfile.TemporaryDirectory(prefix="wrinklewave-") as passing:
+        yield MeasurementFolder.prepare(Path(passing), experiment, resume=False, overwrite=False)

@@ -6,7 +6,9 @@ surface and the held end on the right, so that everything after this knows one o
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -134,6 +136,28 @@ def open_experiment(experiment: Experiment) -> PreparedSource:
             cure="lower it",
         )
     return prepared
+
+
+@contextmanager
+def named_as_in_the_recording(source: PreparedSource) -> Iterator[None]:
+    """Errors about rows and columns of turned frames name what these are in the recording."""
+    try:
+        yield
+    except InputError as error:
+        if not source.transposed:
+            raise
+        raise InputError(
+            error.problem,
+            file=error.file,
+            key=_transposed(error.key),
+            expected=_transposed(error.expected),
+            cure=_transposed(error.cure),
+        ) from error
+
+
+def _transposed(text: str | None) -> str | None:
+    other = {"rows": "columns", "columns": "rows"}
+    return text and re.sub(r"\b(rows|columns)\b", lambda found: other[found[1]], text)
 
 
 def _rate(times: NDArray[np.float64]) -> float | None:
