@@ -13,14 +13,15 @@ MAX_CUTOFF_IN_SAMPLES = 400
 
 
 def low_pass(values: ArrayLike, *, spacing: float, cutoff_wavelength: float) -> Array:
-    """Penalised least squares (Whittaker and Henderson) along the last axis: zero phase, gaps and edges
-    included.
+    """Penalised least squares (Whittaker and Henderson) along the last axis: zero phase, gaps and edges included.
 
-    Each row is replaced by the z that minimises  sum_known (z_i - v_i)^2 + p sum_i (D^3 z)_i^2,  D^3 the
-    third difference. Away from edges and gaps a wave of wavelength Lambda is multiplied by
-    1 / (1 + p (2 sin(pi dx / Lambda))^6), which is 1/2 at the cut-off by the choice of p and 1 / (1 + (cutoff
-    / Lambda)^6) for long waves: at 5 mm cut-off a 2 mm wrinkle keeps 0.4 %, a 25 mm pulse 99.99 %. Parabolas
-    pass unchanged, also at edges and across gaps.
+    Each row is replaced by the z that minimises sum_known (z_i - v_i)^2 + p sum_i (D^3 z)_i^2, D^3 the third
+    difference. Away from edges and gaps a wave of wavelength Lambda is multiplied by
+
+        1 / (1 + p (2 sin(pi dx / Lambda))^6),
+
+    which is 1/2 at the cut-off by the choice of p and 1 / (1 + (cutoff / Lambda)^6) for long waves: at 5 mm cut-off a
+    2 mm wrinkle keeps 0.4 %, a 25 mm pulse 99.99 %. Parabolas pass unchanged, also at edges and across gaps.
 
     Args:
         values: shape [..., n]; NaN marks unknown values.

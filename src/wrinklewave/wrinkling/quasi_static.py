@@ -1,11 +1,11 @@
-"""Quasi-static wrinkling of a stiff film on a soft foundation (Eq. 1 of "Wrinkles Riding Waves ...", after
-Brau et al., Nature Physics 7, 56 (2011), doi:10.1038/nphys1806).
+"""Quasi-static wrinkling of a stiff film on a soft foundation: Eq. 1 of "Wrinkles Riding Waves ...", after Brau et al.
+
+Nature Physics 7, 56 (2011), doi:10.1038/nphys1806:
 
     lambda = lambda_c [1 - (eps - eps_c)]
     A = lambda_c sqrt(eps - eps_c) / pi * [1 - 3/8 (eps - eps_c) - 17/128 (eps - eps_c)^2]
 
-A is the series of an inextensible film in the material coordinate; eps is the compressive nominal strain.
-Below the
+A is the series of an inextensible film in the material coordinate; eps is the compressive nominal strain. Below the
 critical strain there are no wrinkles: the amplitude is zero and the wavelength undefined (NaN).
 
 A film that is wrinkled before it is compressed, with the amplitude A_i, has no such threshold. Equilibrium of
