@@ -52,6 +52,11 @@ def test_travelling_pulse_gives_its_numbers_back(front_speed: float, wrinkle_spe
     assert result.summary["wavefront_speed_m_per_s"] == pytest.approx(front_speed, rel=5e-3)
     assert result.summary["wavefront_local_speed_m_per_s"] == pytest.approx(front_speed, rel=5e-3)
     assert result.summary["wrinkle_speed_m_per_s"] == pytest.approx(wrinkle_speed, rel=5e-3)
+    assert result.summary["wrinkle_to_wavefront_speed_ratio"] == pytest.approx(
+        wrinkle_speed / front_speed, rel=1e-2
+    )
+    assert result.pulse.wavefront.is_line
+    assert result.pulse.wavefront.is_line_through_origin
     settled = -20  # the last 0.2 ms
     assert result.wrinkles.amplitude[settled:] == pytest.approx(motion.amplitude, rel=1e-2)
     wavelength = motion.wavelength * (1 - motion.travel / motion.length)
@@ -106,6 +111,55 @@ def test_strain_rate_and_expected_wrinkles() -> None:
     # a flat surface: its arc is the block's length less the travel
     assert result.quasi_static.strain_at_rest == pytest.approx(0.125, abs=1e-6)
     assert result.summary["amplitude_at_rest_m"] == pytest.approx(1.765316e-4, rel=1e-5)
+
+
+def test_scalars_of_the_strain_say_where_and_how_much() -> None:
+    """A map of a few values: largest beyond 2 mm from the end, reach of 500 /s, share of 300 /s, margin, strains."""
+    surface = TravellingPulse(end_time=1e-3, interval=20e-6).surface()
+    X, strain, rate = surface["X"].values, surface["strain_xx"].values.copy(), np.zeros((51, 203))
+    rate[10:20] = np.where(X < 8e-3, 600.0, np.where(X < 20e-3, 350.0, 100.0))
+    rate[15, X <= 2e-3] = 5000.0
+    strain[5, X < 1e-3], strain[-1] = 0.5, np.where(X < 3e-3, 0.01, 0.1)
+    surface["strain_xx"] = (("time", "point"), strain, {"units": "1"})
+    surface["strain_rate_xx"] = (("time", "point"), rate, {"units": "1/s"})
+    summary = analyse(surface, SETTINGS).summary
+    away = X[X > 2e-3]
+    assert summary["strain_rate_max_per_s"] == 600.0
+    assert summary["strain_rate_max_overall_per_s"] == 5000.0
+    assert summary["strain_rate_above_500_per_s_reach_m"] == X[X >= 8e-3][0]
+    assert summary["strain_rate_above_300_per_s_share"] == pytest.approx(10 / 51 * (away < 20e-3).mean())
+    assert summary["strain_max"] == pytest.approx(strain[:, X > 2e-3].max())
+    assert summary["strain_max_over_critical_strain"] == pytest.approx(0.5 / 0.043)
+    assert summary["wrinkle_free_margin_at_end_m"] == X[X >= 3e-3][0]
+    surface["strain_rate_xx"].values[12] = 600.0
+    surface["strain_xx"].values[-1] = 0.01
+    everywhere = analyse(surface, SETTINGS).summary
+    assert everywhere["strain_rate_above_500_per_s_reach_m"] == 50.4e-3
+    assert everywhere["wrinkle_free_margin_at_end_m"] == 50.4e-3
+
+
+def test_scalars_of_the_pulse_are_those_of_its_step() -> None:
+    """A step 10 s^3 - 15 s^4 + 6 s^5 within the rise time; far from the end the filter does nothing to it."""
+    motion = TravellingPulse(amplitude=0.0)
+    surface = motion.surface()
+    front = surface["x"].values > 40e-3
+    surface["u_y"].values[:, front] *= 0.5  # so that places can be told apart
+    surface["y"].values[:, front] -= surface["u_y"].values[:, front]
+    summary = analyse(surface, SETTINGS).summary
+    s = np.linspace(0.0, 1.0, 10_001)
+    tenth, nine = np.interp([0.1, 0.9], s**3 * (10 - 15 * s + 6 * s**2), s)
+    for place in (15, 25, 45):
+        assert summary[f"rise_time_at_{place}_mm_s"] == pytest.approx(
+            (nine - tenth) * motion.rise_time, rel=5e-3
+        )
+    assert summary["displacement_max_m"] == pytest.approx(motion.height, rel=0.03)
+    # where the front (a tenth of the maximum) arrives, the step 10 mm ahead is as far as 10 mm / front speed ago
+    ahead = np.interp(
+        tenth - 10e-3 / motion.front_speed / motion.rise_time, s, s**3 * (10 - 15 * s + 6 * s**2)
+    )
+    assert summary["displacement_10_mm_ahead_of_wavefront_m"] == pytest.approx(
+        motion.height * ahead, abs=0.02 * motion.height
+    )
 
 
 def test_a_surface_without_film_or_strain_is_analysed_as_far_as_it_goes() -> None:
