@@ -162,6 +162,16 @@ def test_scalars_of_the_pulse_are_those_of_its_step() -> None:
     )
 
 
+def test_wrinkles_over_those_of_eq_1() -> None:
+    """A flat surface: 0.15 mm at a strain of 0.125, where Eq. 1 has 0.1765 mm; 1.75 mm where it has 1.836 mm."""
+    summary = analyse(TravellingPulse(height=0.0).surface(), SETTINGS).summary
+    assert summary["wrinkle_amplitude_over_expected"] == pytest.approx(0.15 / 0.1765316, rel=1e-2)
+    assert summary["wavelength_m"] == pytest.approx(1.75e-3, rel=3e-3)
+    assert summary["wavelength_over_expected"] == pytest.approx(1.75 / 1.836, rel=3e-3)
+    before = analyse(TravellingPulse(height=0.0, end_time=0.2e-3).surface(), SETTINGS).summary
+    assert before["wrinkle_amplitude_over_expected"] is None  # nothing is seen yet
+
+
 def test_a_surface_without_film_or_strain_is_analysed_as_far_as_it_goes() -> None:
     surface = TravellingPulse(amplitude=0.0, end_time=1e-3, interval=20e-6).surface()
     surface = surface.drop_vars(["strain_xx", "y_smooth", "u_y_smooth", "amplitude"])

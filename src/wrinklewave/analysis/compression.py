@@ -105,32 +105,19 @@ def compression_series(
     Raises:
         InputError: if there are fewer than four images, or the grid is uneven or does not suit the filter.
     """
-    subject = subject_of(surface)
-    smooth = low_pass(subject.y, spacing=subject.pixel, cutoff_wavelength=settings.filter_wavelength)
-    smoother = low_pass(
-        subject.y, spacing=subject.pixel, cutoff_wavelength=ARC_CUTOFF * settings.filter_wavelength
-    )
-    arcs = [_arc(subject, row, end) for row, end in zip(smoother, subject.x_boundary, strict=True)]
-    lengths = np.array([length for _, length in arcs])
-    undeformed_arc = float(np.nanmean(lengths[:undeformed_images]))
-    X = np.arange(0.0, subject.length + 0.5 * subject.pixel, subject.pixel)
-    height = np.stack(
-        [
-            _unrolled(subject.x, y, low, along * subject.length / length, X)
-            for y, low, (along, length) in zip(subject.y, smooth, arcs, strict=True)
-        ]
-    )
+    subject, cutoff = subject_of(surface), settings.filter_wavelength
+    X, height, arcs = _unrolled_surface(subject, cutoff)
+    undeformed_arc = float(np.nanmean(arcs[:undeformed_images]))
     envelope = amplitude_envelope(height)
     noise = _noise(surface, subject, undeformed_images)
     window = settings.amplitude_window
     raw = mean_amplitude(envelope, X, window=window)
-    spectra = wavelength_spectra(height, X, window=window, longest=settings.filter_wavelength)
+    spectra = wavelength_spectra(height, X, window=window, longest=cutoff)
     wrinkled = raw >= settings.wrinkle_threshold
     material = np.where(wrinkled, spectra.peak, np.nan)
-    strain = 1.0 - lengths / undeformed_arc
+    strain = 1.0 - arcs / undeformed_arc
     usual = float(np.median(material[wrinkled])) if wrinkled.any() else 0.0
     seen = np.where(wrinkled, material, usual) * (1.0 - strain)
-    cutoff = settings.filter_wavelength
     amplitude = np.sqrt(np.maximum(raw**2 - (NOISE_ENVELOPE * noise) ** 2, 0.0)) / _kept(seen, cutoff)
     margins = np.array(
         [_margins(row, X, limit) for row, limit in zip(envelope, MARGIN_SHARE * raw, strict=True)]
@@ -157,8 +144,19 @@ def compression_series(
     )
 
 
-def _arc(subject: Subject, smooth: Array, end: float) -> tuple[Array, float]:
-    return arc_positions(subject.x, smooth, start=end, end=subject.length)
+def _unrolled_surface(subject: Subject, cutoff: float) -> tuple[Array, Array, Array]:
+    """Undeformed positions X, heights of the wrinkles there [n_images, n_X], and arc lengths [n_images], all in m."""
+    smooth, smoother = (
+        low_pass(subject.y, spacing=subject.pixel, cutoff_wavelength=wavelength)
+        for wavelength in (cutoff, ARC_CUTOFF * cutoff)
+    )
+    X = np.arange(0.0, subject.length + 0.5 * subject.pixel, subject.pixel)
+    heights, arcs = [], []
+    for y, low, lowest, end in zip(subject.y, smooth, smoother, subject.x_boundary, strict=True):
+        along, arc = arc_positions(subject.x, lowest, start=end, end=subject.length)
+        heights.append(_unrolled(subject.x, y, low, along * subject.length / arc, X))
+        arcs.append(arc)
+    return X, np.stack(heights), np.array(arcs)
 
 
 def _unrolled(x: Array, y: Array, smooth: Array, along: Array, X: Array) -> Array:

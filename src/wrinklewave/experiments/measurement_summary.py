@@ -110,60 +110,75 @@ def measurement_summary(
         "frames_analysed": surface.sizes["time"],
         "versions": versions(),
     }
-    return summary, list(source.notes) + _warnings(source, appearance, track, tracks, summary)
+    warnings = [
+        *source.notes,
+        *_struck_too_early(track),
+        *_unreadable(source),
+        *_poor_edges(summary),
+        *_end_out_of_sight(appearance, summary),
+        *_lost_wires(tracks),
+        *_not_analysed(summary),
+    ]
+    return summary, warnings
 
 
-def _warnings(
-    source: FrameSource,
-    appearance: Appearance,
-    track: EndTrack,
-    tracks: WireTracks | None,
-    summary: dict[str, Any],
-) -> list[str]:
-    found = []
-    locking, ratio = summary["pixel_locking_px"], summary["contrast_to_noise"]
+def _struck_too_early(track: EndTrack) -> Iterator[str]:
     if track.touching[0] == 1.0:
-        found.append(
+        yield (
             "The striker touches in the first frame already: contact is taken to be when the struck end begins to "
             "move. If it was struck before, the sample was not at rest: begin earlier (video.frames)."
         )
+
+
+def _unreadable(source: FrameSource) -> Iterator[str]:
     if source.unreadable:
         named = "; ".join(f"{index}: {why}" for index, why in source.unreadable[:NAMED_FRAMES])
         more = len(source.unreadable) - NAMED_FRAMES
-        found.append(
+        yield (
             f"{len(source.unreadable)} of {source.n_frames} frames cannot be read and are left out "
             f"({named}{f'; and {more} more' if more > 0 else ''})."
         )
+
+
+def _poor_edges(summary: dict[str, Any]) -> Iterator[str]:
+    locking, ratio = summary["pixel_locking_px"], summary["contrast_to_noise"]
     if locking is not None and locking > LOCKED:
-        found.append(
+        yield (
             f"Pixel locking of {locking:.3f} px: the profile of the edge is not that of a blurred step "
             "(too sharp for the pixels, compressed, or sharpened by the camera)."
         )
+    if ratio < FAINT:
+        yield f"The contrast at the surface is only {ratio:.1f} times the noise."
+
+
+def _end_out_of_sight(appearance: Appearance, summary: dict[str, Any]) -> Iterator[str]:
     if summary["struck_end_seen_share"] < 1.0 - OFTEN_LOST:
-        found.append(
+        yield (
             f"The struck end is seen in {summary['struck_end_seen_share']:.0%} of the frames only: it must be in "
             "sight, and a striker as bright as the sample must be higher or lower than it."
         )
     if appearance.striker_alike:
-        found.append(
+        yield (
             "The striker is as bright as the sample: while they touch, the end is where their upper edges meet in a "
             "step, and unknown where these are level. Paint the striker, or light it otherwise."
         )
-    if ratio < FAINT:
-        found.append(f"The contrast at the surface is only {ratio:.1f} times the noise.")
-    if tracks is not None:
-        lost = [gap for gap in tracks.gaps if not gap.bridged]
-        if lost:
-            named = ", ".join(
-                f"wire {gap.wire} in frames {gap.first} to {gap.stop - 1}" for gap in lost[:NAMED_FRAMES]
-            )
-            found.append(f"Wires are lost for longer than is bridged: {named}.")
+
+
+def _lost_wires(tracks: WireTracks | None) -> Iterator[str]:
+    lost = [] if tracks is None else [gap for gap in tracks.gaps if not gap.bridged]
+    if lost:
+        named = ", ".join(
+            f"wire {gap.wire} in frames {gap.first} to {gap.stop - 1}" for gap in lost[:NAMED_FRAMES]
+        )
+        yield f"Wires are lost for longer than is bridged: {named}."
+
+
+def _not_analysed(summary: dict[str, Any]) -> Iterator[str]:
     if summary["frames_analysed"] < summary["frames_measured"]:
-        found.append(
+        yield (
             f"Of {summary['frames_measured']} frames, {summary['frames_analysed']} from contact on are analysed; "
             "surface.nc holds all."
         )
-    return found
 
 
 def scale_warnings(experiment: Experiment, seen: float) -> Iterator[str]:
