@@ -16,7 +16,8 @@ from wrinklewave.config import Case, load_case
 from wrinklewave.errors import RunError
 from wrinklewave.experiments.batch import simulate_together
 from wrinklewave.experiments.interruption import Outcome
-from wrinklewave.experiments.simulate import Progress, simulate
+from wrinklewave.experiments.run_progress import Progress
+from wrinklewave.experiments.simulate import simulate
 from wrinklewave.experiments.sweep import SweepProgress, sweep
 
 QUICK = EXAMPLES / "quick.toml"

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from wrinklewave.config import Case
     from wrinklewave.errors import RunError
-    from wrinklewave.experiments.simulate import Progress, Run
+    from wrinklewave.experiments.run_progress import Progress
+    from wrinklewave.experiments.simulate import Run
 
 
 def simulate_together(

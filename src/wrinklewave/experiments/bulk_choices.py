@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.paper_statements import BULK_CHOICES
-from wrinklewave.experiments.simulate import Progress, Run, simulate
+from wrinklewave.experiments.run_progress import Progress
+from wrinklewave.experiments.simulate import Run, simulate
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -1,11 +1,12 @@
-"""Scalars that every run reports beside its analysis: energies, compressibility, versions."""
+"""The scalar results of a run: beside its analysis' own, energies, compressibility, steps, versions."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wrinklewave.environment import versions
 from wrinklewave.materials.moduli import substrate_moduli
 from wrinklewave.theory.film import film_plane_strain_modulus, substrate_plane_strain_modulus
 from wrinklewave.theory.wrinkling import modulus_ratio_of_strain, modulus_ratio_of_wavelength
@@ -14,9 +15,42 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from wrinklewave.config import Case
+    from wrinklewave.dynamics.simulation import Simulation
+    from wrinklewave.experiments.simulate import Run
 
 NOTICEABLE = 1e-3
 """Shares of the internal energy are taken once it is this fraction of its largest value."""
+
+
+def run_summary(run: Run, simulation: Simulation, threads: int, seconds: float) -> dict[str, Any]:
+    """Scalar results of a run, with units in their names; the analysis' own among them."""
+    summary: dict[str, Any] = {
+        "name": run.case.name,
+        "outcome": run.outcome.name.lower(),
+        "message": run.outcome.value,
+        "wrinkle_model": run.case.wrinkles.model,
+        "bulk_response": run.case.substrate.bulk_response,
+    }
+    if run.analysis is not None:
+        summary |= run.analysis.summary
+    rows, columns = simulation.model.mesh.shape
+    return (
+        summary
+        | energy_scalars(run.history)
+        | material_scalars(run.case)
+        | {
+            "elements": rows * columns,
+            "steps": simulation.step,
+            "steps_of_fastest_row": simulation.ratio,
+            "simulated_time_s": simulation.time,
+            "device": simulation.device,
+            "threads": threads,
+            "element_updates_per_s": simulation.updates_per_second,
+            "stepping_time_s": simulation.stepping_seconds,
+            "wall_time_s": seconds,
+            "versions": versions(),
+        }
+    )
 
 
 def energy_scalars(history: dict[str, NDArray[np.float64]]) -> dict[str, float]:

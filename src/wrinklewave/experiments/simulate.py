@@ -18,12 +18,13 @@ from wrinklewave.dynamics.asking import answered
 from wrinklewave.dynamics.checkpoint import read_checkpoint, write_checkpoint
 from wrinklewave.dynamics.model import build_model
 from wrinklewave.dynamics.simulation import HISTORY, Simulation
-from wrinklewave.environment import choose_device, processor, versions
+from wrinklewave.environment import choose_device, processor
 from wrinklewave.errors import InputError, RunError
 from wrinklewave.experiments.interruption import Outcome, interruptible
 from wrinklewave.experiments.recording import FieldStore, Recording, SurfaceRecorder
 from wrinklewave.experiments.run_folder import RunFolder
-from wrinklewave.experiments.run_summary import energy_scalars, material_scalars
+from wrinklewave.experiments.run_progress import Clock, Progress
+from wrinklewave.experiments.run_summary import run_summary
 from wrinklewave.experiments.simulated_surface import laboratory_grid, simulated_surface
 from wrinklewave.experiments.vtkhdf import FieldFile
 
@@ -39,45 +40,6 @@ if TYPE_CHECKING:
 
 Interruptible = Callable[[], AbstractContextManager[Callable[[], bool]]]
 """Makes a context with a function that tells whether an interrupt has come."""
-MEANINGFUL_SHARE = 0.05
-"""Part of the run after which its imbalance of energy is shown: before, there is hardly any work to compare it with."""
-
-
-@dataclass(frozen=True)
-class Progress:
-    """Where a simulation is.
-
-    Args:
-        time: simulated [s].
-        end_time: of the simulation [s].
-        step: steps taken.
-        updates_per_second: element updates per second of the stepping loop.
-        imbalance: energy imbalance over external work.
-        seconds: wall-clock time since the run was started or resumed.
-        seconds_left: estimated; NaN at the start.
-    """
-
-    time: float
-    end_time: float
-    step: int
-    updates_per_second: float
-    imbalance: float
-    seconds: float
-    seconds_left: float
-
-    @property
-    def share(self) -> float:
-        """Of the whole that is done."""
-        return self.time / self.end_time
-
-    def __str__(self) -> str:
-        parts = [f"t = {self.time * 1e3:.3f} of {self.end_time * 1e3:g} ms", f"step {self.step}"]
-        if self.updates_per_second > 0:
-            parts.append(f"{self.updates_per_second / 1e6:.0f} M updates/s")
-        if self.share > MEANINGFUL_SHARE:
-            parts.append(f"energy off by {self.imbalance:.1e}")
-        known = self.seconds_left == self.seconds_left
-        return ", ".join([*parts, f"{self.seconds_left:.0f} s left" if known else "starting"])
 
 
 @dataclass(eq=False)
@@ -263,7 +225,7 @@ def _run(
     started: Started, wished: Callable[[], bool], progress: Callable[[Progress], None]
 ) -> Generator[March, Sample, Outcome]:
     case, simulation, recording, folder = started.case, started.simulation, started.recording, started.folder
-    begin = saved = time.perf_counter()
+    saved = time.perf_counter()
     clock = Clock(simulation)
 
     def save() -> None:
@@ -275,7 +237,7 @@ def _run(
         event = yield from simulation.to_next_event()
         recording.take(event.time, simulation)
         now = time.perf_counter()
-        progress(_progress(simulation, now - begin, clock.seconds_left()))
+        progress(clock.progress())
         if wished():
             save()
             return Outcome.INTERRUPTED
@@ -286,65 +248,6 @@ def _run(
     return Outcome.FINISHED
 
 
-class Clock:
-    """Estimates the time that a simulation has left from its pace since its first steps, which may have had to wait
-    for the compiler."""
-
-    def __init__(self, simulation: Simulation) -> None:
-        self._simulation = simulation
-        self._at_first, self._first = simulation.time, 0.0
-
-    def seconds_left(self) -> float:
-        """Wall-clock time left [s]; NaN while there is nothing to tell it from."""
-        now, done = time.perf_counter(), self._simulation.time
-        if not self._first:
-            if done > self._at_first:
-                self._first, self._at_first = now, done
-            return float("nan")
-        if done == self._at_first:
-            return float("nan")
-        left = float(self._simulation.events[-1]) - done
-        return (now - self._first) * left / (done - self._at_first)
-
-
-def _progress(simulation: Simulation, seconds: float, left: float) -> Progress:
-    end, now = float(simulation.events[-1]), simulation.time
-    return Progress(
-        now, end, simulation.step, simulation.updates_per_second, simulation.imbalance, seconds, left
-    )
-
-
 def _history(simulation: Simulation) -> dict[str, NDArray[np.float64]]:
     columns = np.array(simulation.history, dtype=float).reshape(-1, len(HISTORY))
     return dict(zip(HISTORY, columns.T, strict=True))
-
-
-def run_summary(run: Run, simulation: Simulation, threads: int, seconds: float) -> dict[str, Any]:
-    """Scalar results of a run, with units in their names; the analysis' own among them."""
-    summary: dict[str, Any] = {
-        "name": run.case.name,
-        "outcome": run.outcome.name.lower(),
-        "message": run.outcome.value,
-        "wrinkle_model": run.case.wrinkles.model,
-        "bulk_response": run.case.substrate.bulk_response,
-    }
-    if run.analysis is not None:
-        summary |= run.analysis.summary
-    rows, columns = simulation.model.mesh.shape
-    return (
-        summary
-        | energy_scalars(run.history)
-        | material_scalars(run.case)
-        | {
-            "elements": rows * columns,
-            "steps": simulation.step,
-            "steps_of_fastest_row": simulation.ratio,
-            "simulated_time_s": simulation.time,
-            "device": simulation.device,
-            "threads": threads,
-            "element_updates_per_s": simulation.updates_per_second,
-            "stepping_time_s": simulation.stepping_seconds,
-            "wall_time_s": seconds,
-            "versions": versions(),
-        }
-    )

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from wrinklewave.config import Case
-    from wrinklewave.experiments.simulate import Progress
+    from wrinklewave.experiments.run_progress import Progress
 
 _end: Event | None = None  # of this process, if it is a worker
 
