@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from support.settings import SETTINGS
 from wrinklewave.analysis.analyse import analyse
 from wrinklewave.analysis.boundary import (
     boundary_spectrum,
@@ -29,14 +28,6 @@ from wrinklewave.analysis.wrinkles import (
 from wrinklewave.errors import InputError
 from wrinklewave.wrinkling.travelling_pulse import TravellingPulse
 
-SETTINGS = SimpleNamespace(
-    front_fraction=0.1,
-    front_window=(12e-3, 40e-3),
-    wrinkle_threshold=50e-6,
-    filter_wavelength=5e-3,
-    amplitude_window=(16e-3, 49e-3),
-    positions=(15e-3, 25e-3, 45e-3),
-)
 PIXEL = 50e-6
 X_GRID = np.arange(0.0, 50.4e-3, PIXEL)
 

@@ -6,23 +6,15 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from support.settings import SETTINGS
 from wrinklewave import figures
 from wrinklewave.analysis.analyse import analyse
 from wrinklewave.wrinkling.travelling_pulse import TravellingPulse
 
-SETTINGS = SimpleNamespace(
-    front_fraction=0.1,
-    front_window=(12e-3, 40e-3),
-    wrinkle_threshold=50e-6,
-    filter_wavelength=5e-3,
-    amplitude_window=(16e-3, 49e-3),
-    positions=(15e-3, 25e-3, 45e-3),
-)
 TIMES = (0.38e-3, 1.2e-3)
 
 

@@ -50,6 +50,9 @@ def test_short_gaps_are_bridged_and_long_ones_reported() -> None:
     np.testing.assert_allclose(
         tracks.column[slice(*short), 0], [places(f)[0] for f in range(*short)], atol=1e-6
     )
+    np.testing.assert_allclose(
+        tracks.sigma[slice(*short), 0], 3.5, rtol=1e-9
+    )  # the way from one frame to the next
     assert np.isnan(tracks.column[slice(*long), 1]).all()
     np.testing.assert_allclose(tracks.column[long[1] :, 1], [places(f)[1] for f in range(long[1], N_FRAMES)])
 
