@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import io
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from wrinklewave.experiments.compare import Quantity
 from wrinklewave.experiments.paper_table import paper_table
 from wrinklewave.report import ReportContext, summary_table, write
 from wrinklewave.report.formats import number, shown
+from wrinklewave.report.page import render
+from wrinklewave.report.side_by_side import table_rows
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}
 
@@ -106,12 +110,38 @@ def test_an_empty_report_has_no_empty_sections(tmp_path: Path) -> None:
         ("hourglass_energy_share_max", 0.004, ("hourglass energy share max", "0.4", "%")),
         ("separation_time_s", None, ("separation time", "–", "ms")),
         ("pixel_size_m", 50e-6, ("pixel size", "50", "µm")),
+        ("kinetic_J_per_m", 2.5, ("kinetic", "2.5", "J/m")),
+        ("contact_force_N_per_m", 120.0, ("contact force", "120", "N/m")),
+        ("boundary_bandwidth_hz", 410.0, ("boundary bandwidth", "410", "Hz")),
+        ("surface_sigma_px", 0.05, ("surface sigma", "0.05", "px")),
+        ("tilt_rad", 0.002, ("tilt", "2", "mrad")),
+        ("contact_time_s", -1.0, ("contact time", "-1", "s")),
+        ("contact_time_s", 0.9999, ("contact time", "999.9", "ms")),
     ],
 )
 def test_results_get_words_and_handy_units(
     name: str, value: float | None, expected: tuple[str, str, str]
 ) -> None:
     assert shown(name, value) == expected
+
+
+def test_numbers_beside_each_other_have_one_unit() -> None:
+    row = table_rows([Quantity("stop_time_s", (0.5, None, 1.5), (0.1, None, 0.05), (1.0, None, 3.0))])[0]
+    assert row.unit == "s"
+    assert [cell.value for cell in row.cells] == ["0.5 ± 0.1", "–", "1.5 ± 0.05"]
+    assert [cell.ratio for cell in row.cells] == ["", "", "ratio 3.0000"]
+
+
+def test_times_of_a_long_run_are_seconds_throughout(context: ReportContext) -> None:
+    assert context.history is not None
+    history = {**context.history, "time_s": np.linspace(0.0, 2.0, 500)}
+    page = render(replace(context, history=history))
+    table = page[page.index('id="balance"') :]
+    assert "time s" in table
+    assert "time ms" not in table
+    cells = re.findall(r'<td class="number">\s*([^<\s]*)', table)
+    assert {"0", "2"} <= set(cells)
+    assert "500" not in cells
 
 
 def test_numbers_have_four_digits() -> None:

@@ -17,6 +17,23 @@ UNITS = (  # ending of a name, unit to show, factor from SI
 SHARES = ("_share", "_share_max", "_share_end", "_imbalance_max")
 
 
+class Scale(NamedTuple):
+    """How a result is shown: its words, the unit, and the factor from SI."""
+
+    label: str
+    unit: str
+    factor: float | None = None
+
+    def digits(self, value: float | None) -> str:
+        """The digits of a value [SI]; whole numbers without a unit keep all of theirs."""
+        return number(value if value is None or self.factor is None else self.factor * float(value))
+
+    def with_sigma(self, value: float | None, sigma: float | None) -> str:
+        """Digits of a value and of its standard uncertainty, if there is one [SI]."""
+        text = self.digits(value)
+        return text if sigma is None else f"{text} ± {float(self.digits(sigma)):.2g}"
+
+
 class Shown(NamedTuple):
     """A result as it is shown."""
 
@@ -25,27 +42,27 @@ class Shown(NamedTuple):
     unit: str
 
 
-def shown(name: str, value: float | None) -> Shown:
-    """Label, digits and unit of a result named like ``wavefront_speed_m_per_s`` [SI]."""
+def scale(name: str, largest: float | None) -> Scale:
+    """Words and unit for results named like ``wavefront_speed_m_per_s`` of which ``largest`` [SI] is the largest."""
     if name.endswith(SHARES):
-        return Shown(_words(name), _digits(value, 1e2), "%")
+        return Scale(_words(name), "%", 1e2)
     if name.endswith("_updates_per_s"):
-        return Shown(_words(name.removesuffix("_per_s")), _digits(value, 1e-6), "million/s")
+        return Scale(_words(name.removesuffix("_per_s")), "million/s", 1e-6)
     if name.endswith("pixel_size_m"):
-        return Shown(_words(name.removesuffix("_m")), _digits(value, 1e6), "µm")
+        return Scale(_words(name.removesuffix("_m")), "µm", 1e6)
     for ending, unit, factor in UNITS:
         if name.endswith(ending):
-            return Shown(_words(name.removesuffix(ending)), _digits(value, factor), unit)
+            return Scale(_words(name.removesuffix(ending)), unit, factor)
     if name.endswith("_s"):
-        unit, factor = ("s", 1.0) if value is not None and abs(value) >= 1.0 else ("ms", 1e3)
-        return Shown(_words(name.removesuffix("_s")), _digits(value, factor), unit)
-    return Shown(_words(name), number(value), "")
+        unit, factor = ("s", 1.0) if largest is not None and abs(largest) >= 1.0 else ("ms", 1e3)
+        return Scale(_words(name.removesuffix("_s")), unit, factor)
+    return Scale(_words(name), "")
 
 
-def with_sigma(name: str, value: float | None, sigma: float | None) -> str:
-    """Digits of a result and of its standard uncertainty, if there is one."""
-    text = shown(name, value).value
-    return text if sigma is None else f"{text} ± {float(shown(name, sigma).value):.2g}"
+def shown(name: str, value: float | None) -> Shown:
+    """Label, digits and unit of a single result [SI]."""
+    found = scale(name, value)
+    return Shown(found.label, found.digits(value), found.unit)
 
 
 def number(value: float | None) -> str:
@@ -53,10 +70,6 @@ def number(value: float | None) -> str:
     if value is None:
         return "–"
     return str(value) if isinstance(value, int) else f"{value:.4g}"
-
-
-def _digits(value: float | None, factor: float) -> str:
-    return number(None if value is None else factor * float(value))
 
 
 def _words(name: str) -> str:

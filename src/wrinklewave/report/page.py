@@ -14,7 +14,7 @@ from wrinklewave.experiments.paper_table import Row
 from wrinklewave.figures import FIGURES
 from wrinklewave.figures.registry import FigureSpec
 from wrinklewave.laboratory_frame import Array
-from wrinklewave.report.formats import number, shown
+from wrinklewave.report.formats import number, scale, shown
 from wrinklewave.report.tables import bulk_choices, remarks, tally
 
 if TYPE_CHECKING:
@@ -147,6 +147,9 @@ def _balance(history: Mapping[str, Array] | None) -> dict[str, Any] | None:
         for name, values in columns.items()
         if name == "time_s" or (name.endswith("_J_per_m") and np.any(values[rows] != 0.0))
     }
-    headings = [shown(name, None) for name in kept]
-    lines = [[shown(name, float(values[row])).value for name, values in kept.items()] for row in rows]
-    return {"names": [f"{heading.label} {heading.unit}".strip() for heading in headings], "lines": lines}
+    scales = [scale(name, float(np.abs(values[rows]).max())) for name, values in kept.items()]
+    lines = [
+        [how.digits(float(values[row])) for how, values in zip(scales, kept.values(), strict=True)]
+        for row in rows
+    ]
+    return {"names": [f"{how.label} {how.unit}".strip() for how in scales], "lines": lines}

@@ -12,7 +12,7 @@ from wrinklewave.environment import versions
 from wrinklewave.experiments.compare import Comparison, Quantity
 from wrinklewave.experiments.run_folder import write_json, write_text
 from wrinklewave.figures.side_by_side import COMPARISON_FIGURES, compared_inputs
-from wrinklewave.report.formats import shown, with_sigma
+from wrinklewave.report.formats import Scale, scale
 from wrinklewave.report.page import ReportContext, environment, picture
 
 if TYPE_CHECKING:
@@ -114,15 +114,17 @@ def table_rows(quantities: Sequence[Quantity]) -> list[TableRow]:
 
 
 def _row(quantity: Quantity) -> TableRow:
-    label, _, unit = shown(quantity.name, quantity.values[-1])
-    return TableRow(label, tuple(_cell(quantity, index) for index in range(len(quantity.values))), unit)
+    known = [abs(value) for value in quantity.values if value is not None]
+    how = scale(quantity.name, max(known, default=None))
+    cells = (_cell(quantity, index, how) for index in range(len(quantity.values)))
+    return TableRow(how.label, tuple(cells), how.unit)
 
 
-def _cell(quantity: Quantity, index: int) -> Cell:
+def _cell(quantity: Quantity, index: int, how: Scale) -> Cell:
     value, sigma = quantity.values[index], quantity.sigmas[index]
     if value is None:
         return Cell("–", "")
-    text = with_sigma(quantity.name, value, sigma)
+    text = how.with_sigma(value, sigma)
     ratio = quantity.ratios[index]
     return Cell(text, "" if ratio is None or index == 0 else f"ratio {ratio:.4f}")
 

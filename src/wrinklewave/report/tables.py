@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from wrinklewave.analysis.summary import sigma_name
 from wrinklewave.experiments.paper_table import NO_NUMBER, NOT_REPRODUCED, REPRODUCED, Row
-from wrinklewave.report.formats import number, shown, with_sigma
+from wrinklewave.report.formats import number, scale
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -68,9 +68,9 @@ def summary_table(summary: Mapping[str, float | None], names: Sequence[str]) -> 
 
     table = Table(show_header=False, box=None)
     for name in (name for name in names if summary.get(name) is not None):
-        label, _, unit = shown(name, summary[name])
-        value = with_sigma(name, summary[name], summary.get(sigma_name(name)))
-        table.add_row(label, f"{value} {unit}".strip())
+        how = scale(name, summary[name])
+        value = how.with_sigma(summary[name], summary.get(sigma_name(name)))
+        table.add_row(how.label, f"{value} {how.unit}".strip())
     return table
 
 
