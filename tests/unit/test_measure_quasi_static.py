@@ -12,7 +12,9 @@ from typer.testing import CliRunner
 import wrinklewave as ww
 from wrinklewave.cli import application
 from wrinklewave.errors import InputError
+from wrinklewave.experiments import measure_quasi_static
 from wrinklewave.experiments.filming import film_run
+from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.wrinkling.slow_compression import SlowCompression
 
 STRAINS = tuple(np.linspace(0.0, 0.18, 31).tolist())
@@ -110,3 +112,19 @@ def test_mistakes(experiment: Path) -> None:
     assert raised.value.exit_code == 2
     with pytest.raises(InputError, match="is empty"):
         ww.measure_quasi_static(experiment, overrides=["fit.strains=[0.2, 0.1]"])
+
+
+def test_an_interrupted_test_goes_on_with_the_same_images_only(
+    experiment: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = experiment.with_name("first.experiment.toml")
+    with monkeypatch.context() as interrupted:
+        interrupted.setattr(measure_quasi_static, "measure_frames", lambda *arguments: False)
+        found = ww.measure_quasi_static(file, out=tmp_path / "m")
+    assert found.outcome is Outcome.INTERRUPTED
+    assert found.test is None
+    with pytest.raises(InputError, match="another recording"):
+        ww.measure_quasi_static(file, out=tmp_path / "m", overrides=["video.frames=[0, 20]"], resume=True)
+    again = ww.measure_quasi_static(file, out=tmp_path / "m", resume=True)
+    assert again.summary["critical_strain"] == ww.measure_quasi_static(file).summary["critical_strain"]
+    assert not list((tmp_path / "m").glob(".*frames"))
