@@ -62,10 +62,18 @@ def test_what_is_left_out_follows_from_the_block_and_the_end_time() -> None:
     case = case_from_text(SMALLEST)
     assert case.film is None
     assert case.wrinkles.model == "none"
-    assert case.wrinkles.averaging_depth == 0.01
-    assert case.output.pixel_size == pytest.approx(5e-5)
-    assert case.output.surface_interval == pytest.approx(2e-6)
-    assert case.analysis.front_window == pytest.approx((0.0125, 0.04))
+    length, height, end, wavelength = 50e-3, 20e-3, 1e-3, 50e-3 / 25
+    assert case.wrinkles.averaging_depth == pytest.approx(height / 2)
+    assert case.output.pixel_size == pytest.approx(length / 1000)
+    assert case.output.surface_interval == pytest.approx(end / 500)
+    assert case.output.field_interval == pytest.approx(end / 50)
+    assert case.output.history_interval == pytest.approx(end / 500)
+    assert case.analysis.front_window == pytest.approx((0.25 * length, 0.8 * length))
+    assert case.analysis.wrinkle_threshold == pytest.approx(wavelength / 40)
+    assert case.analysis.filter_wavelength == pytest.approx(2.5 * wavelength)
+    assert case.analysis.amplitude_window == pytest.approx((length / 3, 0.95 * length))
+    assert case.analysis.positions == pytest.approx((0.3 * length, 0.5 * length, 0.9 * length))
+    assert case.analysis.times == pytest.approx((0.1 * end, 0.25 * end, 0.7 * end))
 
 
 def test_film_takes_after_the_substrate() -> None:
