@@ -86,6 +86,28 @@ def test_bad_case(tmp_path: Path, mistake: str) -> None:
     assert error.exit_code == 2
 
 
+@pytest.mark.parametrize(
+    "limit",
+    [
+        "output.surface_interval=333.3333 us",
+        "output.pixel_size=16.66 mm",
+        "output.probes=['0 mm', '50 mm']",
+        "analysis.front_window=['0 mm', '50 mm']",
+        "analysis.times=['1 ms']",
+        "wrinkles.averaging_depth=10 mm",
+        "boundaries.slip=9.999 mm",
+        "film.thickness=19.99 mm",
+        "film.end_gap=49.99 mm",
+        "drive.stop_distance=49.99 mm",
+        "drive.rise_time=0.63 ms",  # speed is gained all the way to the stoppers
+        "solver.mass_scaling=1",
+    ],
+)
+def test_limits_themselves_are_allowed(tmp_path: Path, limit: str) -> None:
+    (tmp_path / "case.toml").write_text(GOOD)
+    assert load_case(tmp_path / "case.toml", [limit]).name == "good"
+
+
 def test_missing_file(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"nothing\.toml: no such file") as caught:
         load_case(tmp_path / "nothing.toml")
