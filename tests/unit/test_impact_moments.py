@@ -109,3 +109,25 @@ def test_nothing_happens_at_rest() -> None:
         track, column=np.full(100, REST), striker=np.full(100, np.nan), touching=np.full(100, np.nan)
     )
     assert np.isnan(find_moments(at_rest).contact.time)
+
+
+def test_stated_uncertainty_of_a_contact_is_its_scatter() -> None:
+    track, found = impact(), []
+    apart = np.isfinite(track.gap) & (track.time < CONTACT)
+    exact = np.where(apart, SPEED * (CONTACT - track.time), track.gap)
+    for seed in range(200):
+        noise = np.where(apart, np.random.default_rng(seed).normal(0.0, 0.03, exact.size), 0.0)
+        found.append(find_moments(replace(track, gap=exact + noise)).contact)
+    times = np.array([moment.time for moment in found])
+    assert times.mean() == pytest.approx(CONTACT, abs=0.01 / RATE)
+    assert np.mean([moment.sigma for moment in found]) == pytest.approx(times.std(), rel=0.2)
+    assert np.median([moment.rate for moment in found]) == pytest.approx(-SPEED, rel=0.02)
+
+
+def test_a_gap_that_was_never_seen_closes_between_two_frames() -> None:
+    """Anywhere between them, as likely here as there: the middle, and the interval over the root of 12."""
+    track = impact()
+    contact = find_moments(replace(track, gap=np.full(track.time.size, np.nan))).contact
+    after = track.time[track.time >= CONTACT][0]
+    assert contact.time == pytest.approx(after - 0.5 / RATE)
+    assert contact.sigma == pytest.approx(1 / RATE / np.sqrt(12))
