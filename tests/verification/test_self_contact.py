@@ -73,13 +73,20 @@ def test_a_closing_groove_does_not_close_beyond_contact(self_contact: bool, veri
         assert overlap(model) > 2.0
 
 
+def folded_block() -> Model:
+    """The same with the sides of the groove past each other, its surface at random velocities."""
+    model = grooved_block(self_contact=True)
+    a = model.arrays
+    a.u[-1] = (LENGTH / 2 - a.X[-1]) * 0.8
+    a.u[-1, COLUMNS // 2 - 6 : COLUMNS // 2] += 0.6e-3
+    a.vx[-1], a.vy[-1] = np.random.default_rng(0).normal(size=(2, COLUMNS + 1))
+    return model
+
+
 def test_contact_keeps_momentum(verified: Verified) -> None:
     """sum m v does not change by impulses within the body."""
-    model = grooved_block(self_contact=True)
-    a, rng = model.arrays, np.random.default_rng(0)
-    a.u[-1] = (LENGTH / 2 - a.X[-1]) * 0.8  # the sides of the groove pass each other
-    a.u[-1, COLUMNS // 2 - 6 : COLUMNS // 2] += 0.6e-3
-    a.vx[-1], a.vy[-1] = rng.normal(size=(2, COLUMNS + 1))
+    model = folded_block()
+    a = model.arrays
     mass = 1.0 / a.inverse_mass[-1]
 
     def momentum() -> np.ndarray:
@@ -90,3 +97,31 @@ def test_contact_keeps_momentum(verified: Verified) -> None:
     assert (a.vx[-1] != velocities).any()  # something touched
     given = np.abs(momentum() - before).max() / (mass * np.hypot(a.vx[-1], a.vy[-1])).sum()
     verified.error("momentum given to a body by contact with itself", float(given), 1e-12)
+
+
+def test_a_lower_surface_is_an_upper_one_upside_down() -> None:
+    upper, lower = folded_block(), folded_block()
+    for turned in (lower.arrays.Y, lower.arrays.w, lower.arrays.vy):
+        turned *= -1.0
+    losses = []
+    for model, side in ((upper, 1.0), (lower, -1.0)):
+        a, old = model.arrays, model.boundary.old[TOP]
+        old[:] = a.u[-1], a.w[-1], a.vx[-1], a.vy[-1]
+        losses.append(keep_apart(a, ROWS, side, 1e-6, old, model.boundary.bins[TOP]))
+    assert losses[0] != 0.0
+    assert losses[1] == pytest.approx(losses[0], rel=1e-12)
+    for name, sign in (("u", 1.0), ("vx", 1.0), ("w", -1.0), ("vy", -1.0)):
+        np.testing.assert_allclose(
+            getattr(lower.arrays, name), sign * getattr(upper.arrays, name), rtol=1e-12
+        )
+
+
+def test_what_overhangs_nowhere_is_left_alone() -> None:
+    """Also where the undeformed surface overhangs and the motion has undone it."""
+    model = folded_block()
+    a = model.arrays
+    a.X[-1] = a.X[-1] + a.u[-1]
+    a.u[-1] = np.linspace(0.0, LENGTH, COLUMNS + 1) - a.X[-1]
+    before = a.vx[-1].copy()
+    assert keep_apart(a, ROWS, 1.0, 1e-6, model.boundary.old[TOP], model.boundary.bins[TOP]) == 0.0
+    np.testing.assert_array_equal(a.vx[-1], before)
