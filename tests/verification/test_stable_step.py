@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.sparse import diags_array
 from scipy.sparse.linalg import eigsh
 
@@ -80,3 +82,14 @@ def test_estimate_is_safe_on_distorted_and_uneven_bodies(
     verified.error(
         f"largest estimated over exact stable step, uneven bodies, {moduli}, {element}", worst, 1.0
     )
+
+
+@settings(max_examples=60)
+@given(st.floats(0.5, 1.6), st.floats(0.5, 1.6), st.floats(-0.5, 0.5), st.sampled_from(list(MODULI.values())))
+def test_estimate_is_safe_in_any_even_deformation(
+    along: float, across: float, shear: float, moduli: tuple[float, float]
+) -> None:
+    mesh = block(length=6e-3, bottom=0.0, top=6e-3, elements=(6, 6))
+    u = affine(mesh, np.array([[along, shear], [0.0, across]]))
+    for element in ELEMENTS:
+        assert 0.5 < ratio(mesh, *moduli, u, element) < 1.0 + 1e-9
