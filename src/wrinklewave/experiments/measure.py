@@ -25,7 +25,13 @@ from wrinklewave.experiments.measured_surface import (
     track_columns,
     write_surface,
 )
-from wrinklewave.experiments.measurement_checks import check_direction, check_early, check_frames, check_scale
+from wrinklewave.experiments.measurement_checks import (
+    check_contact,
+    check_direction,
+    check_early,
+    check_frames,
+    check_scale,
+)
 from wrinklewave.experiments.measurement_folder import MeasurementFolder, opened_folder
 from wrinklewave.experiments.measurement_summary import (
     measurement_summary,
@@ -155,13 +161,7 @@ def _evaluate(
         pixels = calibrate(experiment, appearance, track.rest)
     check_direction(track, experiment.sample.length / pixels.pixel_size)
     impact = find_moments(track, experiment.contact.time)
-    if not np.isfinite(impact.contact.time):
-        raise InputError(
-            "no contact is seen: neither does a striker touch, nor does the struck end move",
-            key="contact.time",
-            expected="an impact within the frames used",
-            cure='give it, as in time = "1.2 ms" on the recording\'s clock, or check video.frames',
-        )
+    check_contact(impact)
     track = with_exposure_uncertainty(track, impact)
     tracks = write_surface(
         folder.surface,
@@ -182,9 +182,7 @@ def _evaluate(
         source, appearance, pixels, series, track, impact, tracks, surface, analysis
     )
     warnings += grey_warnings(source, histogram(source))
-    warnings += scale_warnings(
-        experiment, pixels.pixel_size * (appearance.held_end - track.rest) / np.cos(pixels.tilt)
-    )
+    warnings += scale_warnings(experiment, appearance, pixels, track.rest)
     return Measurement(
         experiment,
         Outcome.FINISHED,

@@ -168,11 +168,10 @@ def _measured_series(
         grid=laboratory_grid(appearance, pixels, measurer.finder.resolution),
         attrs=surface_attributes(experiment, appearance, pixels) | {"procedure": "quasi-static"},
     )
-    seen = pixels.pixel_size * (appearance.held_end - track.rest) / np.cos(pixels.tilt)
     warnings = (
         *source.notes,
         *grey_warnings(source, histogram(source)),
-        *scale_warnings(experiment, seen),
+        *scale_warnings(experiment, appearance, pixels, track.rest),
     )
     return MeasuredSeries(experiment, surfaces.read(path), frames.frame, pixels, warnings)
 

@@ -11,7 +11,7 @@ from wrinklewave.errors import InputError
 
 if TYPE_CHECKING:
     from wrinklewave.config.experiment import Experiment
-    from wrinklewave.experiments.impact_moments import EndTrack
+    from wrinklewave.experiments.impact_moments import EndTrack, Impact
     from wrinklewave.imaging.appearance import Appearance
     from wrinklewave.imaging.prepared import PreparedSource
 
@@ -93,4 +93,19 @@ def check_direction(track: EndTrack, length: float) -> None:
             key="calibration.x_axis",
             expected="the direction in the image from the struck to the held end",
             cure="turn it if the striker comes from the other side; give region if something stands before the sample",
+        )
+
+
+def check_contact(impact: Impact) -> None:
+    """Whether there is an impact at all.
+
+    Raises:
+        InputError: if not.
+    """
+    if not np.isfinite(impact.contact.time):
+        raise InputError(
+            "no contact is seen: neither does a striker touch, nor does the struck end move",
+            key="contact.time",
+            expected="an impact within the frames used",
+            cure='give it, as in time = "1.2 ms" on the recording\'s clock, or check video.frames',
         )

@@ -181,8 +181,11 @@ def _not_analysed(summary: dict[str, Any]) -> Iterator[str]:
         )
 
 
-def scale_warnings(experiment: Experiment, seen: float) -> Iterator[str]:
-    """Whether the undeformed sample is as long in the images, ``seen`` [m], as it is said to be."""
+def scale_warnings(
+    experiment: Experiment, appearance: Appearance, pixels: PixelMap, rest: float
+) -> Iterator[str]:
+    """Whether the sample at rest, struck end in the column ``rest``, is as long in the images as it is said to be."""
+    seen = pixels.pixel_size * (appearance.held_end - rest) / np.cos(pixels.tilt)
     off = seen / experiment.sample.length - 1.0
     if np.isfinite(off) and abs(off) > SCALE_TOLERANCE:
         yield (
