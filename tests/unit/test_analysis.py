@@ -263,6 +263,8 @@ def test_uncertainty_of_a_speed_of_few_independent_arrivals_is_the_textbooks() -
     fit, line = fit_speed(x, times, window=(0.0, 4.0)), linregress(x, times)
     assert fit.speed == pytest.approx(1 / line.slope, rel=1e-9)
     assert fit.speed_sigma == pytest.approx(line.stderr / line.slope**2, rel=1e-9)
+    residual = times - (line.intercept + line.slope * x)
+    assert fit.residual_rms == pytest.approx(np.sqrt(np.mean(residual**2)))
 
 
 def test_values_ahead_of_a_front_are_those_of_its_arrival() -> None:
