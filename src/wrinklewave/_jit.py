@@ -11,6 +11,7 @@ import ast
 import hashlib
 import inspect
 import os
+import secrets
 import textwrap
 from collections.abc import Callable
 from functools import cache
@@ -91,12 +92,25 @@ def choose_cache(function: Callable[..., Any]) -> None:
 
 _OPTIONS: dict[Any, dict[str, Any]] = {}
 """Of every kernel."""
+_PROCESS = secrets.token_hex(4)
+
+
+def _keep_apart(kernel: Any) -> None:
+    """Give what this process compiles file names of its own.
+
+    Numba numbers the files of a function. Two processes that compile it for different types at a time would take the
+    same number, and one would find the other's code under its own types.
+    """
+    if not numba.config.DISABLE_JIT:  # type: ignore[attr-defined]  # made when numba is imported
+        file = kernel._cache._cache_file
+        file._data_name_pattern = file._data_name_pattern.replace("{number", f"{_PROCESS}-{{number")
 
 
 def _compiler(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     def compile_lazily(function: Callable[..., Any]) -> Any:
         choose_cache(function)
         kernel = numba.njit(**options)(function)
+        _keep_apart(kernel)
         _OPTIONS[kernel] = options
         return kernel
 

@@ -10,6 +10,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import fields
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 import xarray as xr
@@ -19,13 +20,14 @@ import wrinklewave as ww
 from wrinklewave.cli import application
 from wrinklewave.config.experiment import Experiment, load_experiment
 from wrinklewave.errors import InputError
-from wrinklewave.experiments import frame_blocks
+from wrinklewave.experiments import frame_blocks, learning
 from wrinklewave.experiments import measure as measuring
 from wrinklewave.experiments.frame_blocks import FrameBlock, MeasuringProgress, measure_block
 from wrinklewave.experiments.interruption import Outcome
 from wrinklewave.experiments.learning import learn
 from wrinklewave.experiments.measure import measure
 from wrinklewave.imaging.camera import Camera, Levels, Striker, Wires, film
+from wrinklewave.imaging.compiling import kernel_calls
 from wrinklewave.imaging.frame_measuring import FrameMeasurer
 from wrinklewave.imaging.frames import ArraySource, FrameSource, Image
 from wrinklewave.imaging.prepared import open_experiment
@@ -130,6 +132,19 @@ def test_the_struck_end_the_wires_and_the_moments_come_back(filmed: Path, measur
     assert summary["striker_stop_distance_m"] == pytest.approx(1.5e-3, abs=0.05 * PIXEL)
     assert summary["striker_separation_time_s"] == pytest.approx(1.5e-3 / 10.0, abs=5e-6)
     assert summary["pixel_locking_px"] < 0.005
+
+
+def test_kernels_compiled_beforehand_are_those_that_measure(
+    filmed: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(learning, "compile_kernels", lambda: None)
+    experiment = load_experiment(filmed / "impact.toml")
+    with open_experiment(experiment) as source:
+        appearance, wires = learn(experiment, source)
+        FrameMeasurer(appearance, wires=wires).measure(source.frame(20))
+    here, beside = kernel_calls()
+    for kernel, arguments in here + beside:
+        assert tuple(map(numba.typeof, arguments)) in kernel.signatures, kernel
 
 
 def test_a_single_frame_gives_what_the_batch_gives_bit_for_bit(filmed: Path) -> None:

@@ -10,7 +10,18 @@ import pytest
 
 PACKAGE = Path(__file__).parents[2] / "src" / "wrinklewave"
 ROOMS = (
-    *("errors", "_version", "_jit", "units", "config", "materials", "theory", "surface", "laboratory_frame"),
+    *(
+        "errors",
+        "_version",
+        "_jit",
+        "compiling",
+        "units",
+        "config",
+        "materials",
+        "theory",
+        "surface",
+        "laboratory_frame",
+    ),
     *("wrinkling", "mesh", "dynamics", "imaging", "analysis", "environment", "citations", "experiments"),
     *("figures", "report", "cli"),
 )

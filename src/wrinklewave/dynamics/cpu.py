@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from wrinklewave.compiling import compiled_beside
 from wrinklewave.dynamics import row_steps
 from wrinklewave.dynamics.backends import March, Sample, Snapshot
 from wrinklewave.dynamics.boundary import N_TOTALS
@@ -98,7 +99,7 @@ class Cpu:
 
     def march(self, wanted: March) -> Sample:
         """Step, and survey the state."""
-        self._compile(wanted.counts)
+        self._compile()
         shared, totals = self._pace.choose(), np.zeros(N_TOTALS)
         begin = time.perf_counter()
         self._advance(wanted, shared, totals)
@@ -119,11 +120,19 @@ class Cpu:
         shared = shared._replace(shares=shares_of(wanted.counts, shared.shares.size - 1))
         row_steps.advance(wanted.n, t, Plan(wanted.dt, wanted.counts), m.row_steps, shared, *state)
 
-    def _compile(self, counts: NDArray[np.int64] | None) -> None:
+    def _compile(self) -> None:
         """Take no step once, so that the time of the first steps is not that of the compiler."""
-        if not self._compiled:
-            self._advance(March(0, 0.0, 0.0, 1.0, counts), self._model.arrays, np.zeros(N_TOTALS))
-            self._compiled = True
+        if self._compiled:
+            return
+        m, steps = self._model, self._model.row_steps
+        counts = None if steps is None else np.ones(m.mesh.shape[0], dtype=np.int64)
+        a = self._mean
+        survey = (0, 1.0, a, self._memory, m.terms, self._work, self._survey)
+        fields = (0, a, self._memory, m.terms, np.empty((len(FIELDS), 1, 1)))
+        stable = (0, m.arrays, m.density, self._steps)
+        with compiled_beside((survey_share, survey), (fields_share, fields), (stable_steps_share, stable)):
+            self._advance(March(0, 0.0, 0.0, 1.0, counts), m.arrays, np.zeros(N_TOTALS))
+        self._compiled = True
 
     def least_stable_step(self) -> float:
         """The smallest of them [s]."""
@@ -131,11 +140,13 @@ class Cpu:
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
+        self._compile()
         share_out(stable_steps_share, self._parts, self._model.arrays, self._model.density, self._steps)
         return self._steps
 
     def snapshot(self) -> Callable[[], Snapshot]:
         """Copy the state; its fields can be computed while the next steps are taken."""
+        self._compile()
         a, slot = self._mean, self._slots.pop() if self._slots else _Slot.of(self._model)
         set_aside(a.u, a.w, a.vx, a.vy, self._model.memory, slot.nodal, slot.memory)
         slot.factors[:] = a.factors

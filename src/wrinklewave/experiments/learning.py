@@ -9,6 +9,7 @@ import numpy as np
 
 from wrinklewave.errors import InputError
 from wrinklewave.imaging.appearance import Appearance, learn_appearance
+from wrinklewave.imaging.compiling import compile_kernels
 from wrinklewave.imaging.frame_measuring import FrameMeasurer
 from wrinklewave.imaging.prepared import PreparedSource, named_as_in_the_recording
 from wrinklewave.imaging.wires import WireLook, learn_wires
@@ -27,6 +28,7 @@ MOVED = 1.0
 
 def learn(experiment: Experiment, source: PreparedSource) -> tuple[Appearance, WireLook | None]:
     """What the sample and its wires look like at rest, from the undeformed frames and some others."""
+    compile_kernels()
     size = source.shape[0] * source.shape[1] * 4
     most = int(np.clip(LEARNT_BYTES / size, FEWEST_LEARNT, MOST_LEARNT))
     undeformed = _spread(source, experiment.video.undeformed_frames, most)

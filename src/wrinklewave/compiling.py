@@ -1,0 +1,84 @@
+"""Kernels compiled in a process of its own, beside what this one compiles: in one process numba compiles one at a time.
+
+What is compiled meets in numba's cache on the disk. Nothing depends on the other process: what it did not bring is
+compiled where it is called.
+"""
+
+from __future__ import annotations
+
+import importlib
+import os
+import pickle
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing import parent_process
+from typing import Any
+
+import numba
+
+_HELPER = "from wrinklewave.compiling import compile_wanted; compile_wanted()"
+
+
+@contextmanager
+def compiled_beside(*calls: tuple[Any, tuple[Any, ...]]) -> Iterator[bool]:
+    """Have kernels compiled for the arguments of these ``calls``, while the body of this context does other work.
+
+    At its end they are in the cache. Nothing is started if they are there already, or if no core is free for it;
+    yields whether something was.
+    """
+    wanted = _missing(calls) if _core_is_free() and not numba.config.DISABLE_JIT else []  # type: ignore[attr-defined]
+    if not wanted:
+        yield False
+        return
+    # a session of its own: an interrupt at the terminal is for this process, which ends the other
+    helper = subprocess.Popen(
+        [sys.executable, "-P", "-c", _HELPER],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    try:
+        _hand_over(helper, pickle.dumps(wanted))
+        yield True
+        helper.wait()
+    finally:
+        helper.kill()
+        helper.wait()
+
+
+def _core_is_free() -> bool:
+    """Whether there is a second core; processes that others start, as sweeps do, share the cores already."""
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return cores > 1 and parent_process() is None
+
+
+def _missing(calls: tuple[tuple[Any, tuple[Any, ...]], ...]) -> list[tuple[str, str, tuple[Any, ...]]]:
+    """Module, name and types of the arguments of the kernels that are not in the cache."""
+    typed = [(kernel, tuple(numba.typeof(argument) for argument in given)) for kernel, given in calls]
+    return [
+        (kernel.__module__, kernel.__name__, types) for kernel, types in typed if not is_kept(kernel, types)
+    ]
+
+
+def is_kept(kernel: Any, types: tuple[Any, ...]) -> bool:
+    """Whether a kernel is in the cache for arguments of these ``types``."""
+    key = kernel._cache._index_key(types, kernel.targetctx.codegen())
+    return key in kernel._cache._cache_file._load_index()
+
+
+def _hand_over(helper: subprocess.Popen[bytes], wanted: bytes) -> None:
+    assert helper.stdin is not None
+    try:
+        helper.stdin.write(wanted)
+        helper.stdin.close()
+    except BrokenPipeError:  # it did not start
+        pass
+
+
+def compile_wanted() -> None:
+    """Compile what is asked for on the standard input."""
+    for module, name, types in pickle.load(sys.stdin.buffer):
+        getattr(importlib.import_module(module), name).compile(types)
