@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from rich.progress import TaskID
 
 LOG_INTERVAL, BAR_INTERVAL = 5.0, 0.1
-COMPILING = "compiling kernels, if they are new (once, 10 to 20 s)"
+COMPILING = "compiling kernels, if they are new (once per machine, 10 to 40 s)"
 
 
 class State(Protocol):
