@@ -10,6 +10,7 @@ from __future__ import annotations
 import ast
 import hashlib
 import inspect
+import linecache
 import os
 import secrets
 import textwrap
@@ -49,8 +50,25 @@ def _vector_bytes() -> int:
 VECTOR_BYTES = _vector_bytes()
 
 
+def cache_folder() -> Path:
+    """Folder of all compiled kernels."""
+    own = os.environ.get("NUMBA_CACHE_DIR")
+    return (
+        Path(own) if own else Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "wrinklewave"
+    )
+
+
+_SOURCES_OF_OTHERS: list[str] = []
+"""Of the kernels that do not belong to the package, such as a law that a script puts in another's place."""
+
+
+def calls_kernels_of_others() -> bool:
+    """Whether kernels of this process may be others than the package alone would make."""
+    return bool(_SOURCES_OF_OTHERS)
+
+
 @cache
-def _kernel_cache(room: str) -> str:
+def _kernel_cache(room: str, sources_of_others: tuple[str, ...]) -> str:
     """Folder of a room's compiled kernels, under a digest of all sources that its kernels call.
 
     Numba's own check sees only the file that a kernel stands in, not those of the functions it calls.
@@ -59,9 +77,8 @@ def _kernel_cache(room: str) -> str:
     sources = [Path(__file__)]
     for name in sorted({"materials", room}):
         sources += sorted((package / name).rglob("*.py"))
-    digest = hashlib.sha256(b"".join(source.read_bytes() for source in sources)).hexdigest()[:16]
-    folder = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    return str(folder / "wrinklewave" / f"{room}-{digest}")
+    texts = [source.read_bytes() for source in sources] + [text.encode() for text in sources_of_others]
+    return str(cache_folder() / f"{room}-{hashlib.sha256(b''.join(texts)).hexdigest()[:16]}")
 
 
 def _offer_noalias() -> dict[str, Any]:
@@ -86,8 +103,11 @@ INLINED: dict[str, Any] = STRICTLY_INLINED | {"fastmath": True}
 
 def choose_cache(function: Callable[..., Any]) -> None:
     """Make numba keep what it compiles of ``function`` where its room's kernels are."""
-    if "NUMBA_CACHE_DIR" not in os.environ:
-        numba.config.CACHE_DIR = _kernel_cache(function.__module__.split(".")[1])
+    package, _, module = function.__module__.partition(".")
+    if package != __package__:
+        _SOURCES_OF_OTHERS.append("".join(linecache.getlines(function.__code__.co_filename)))
+    room = module.partition(".")[0] if package == __package__ else "others"
+    numba.config.CACHE_DIR = _kernel_cache(room, tuple(_SOURCES_OF_OTHERS))
 
 
 _OPTIONS: dict[Any, dict[str, Any]] = {}

@@ -18,6 +18,8 @@ from typing import Any
 
 import numba
 
+from wrinklewave._jit import calls_kernels_of_others
+
 _HELPER = "from wrinklewave.compiling import compile_wanted; compile_wanted()"
 
 
@@ -25,10 +27,10 @@ _HELPER = "from wrinklewave.compiling import compile_wanted; compile_wanted()"
 def compiled_beside(*calls: tuple[Any, tuple[Any, ...]]) -> Iterator[bool]:
     """Have kernels compiled for the arguments of these ``calls``, while the body of this context does other work.
 
-    At its end they are in the cache. Nothing is started if they are there already, or if no core is free for it;
-    yields whether something was.
+    At its end they are in the cache. Nothing is started if they are there already, if no core is free for it, or if
+    this process has kernels that the other would not know; yields whether something was.
     """
-    wanted = _missing(calls) if _core_is_free() and not numba.config.DISABLE_JIT else []  # type: ignore[attr-defined]
+    wanted = _missing(calls) if _can_help() and _core_is_free() else []
     if not wanted:
         yield False
         return
@@ -47,6 +49,11 @@ def compiled_beside(*calls: tuple[Any, tuple[Any, ...]]) -> Iterator[bool]:
     finally:
         helper.kill()
         helper.wait()
+
+
+def _can_help() -> bool:
+    """Whether another process would compile what this one does."""
+    return not (calls_kernels_of_others() or numba.config.DISABLE_JIT)  # type: ignore[attr-defined]
 
 
 def _core_is_free() -> bool:

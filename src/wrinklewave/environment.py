@@ -161,7 +161,7 @@ def threading() -> Threading:
     features = config.CPU_FEATURES or llvm.get_host_cpu_features().flatten()
     wide = "+avx512f" in features and "-prefer-256-bit" in features
     width = 512 if wide else 256 if "+avx2" in features else 128
-    cache = os.environ.get("NUMBA_CACHE_DIR") or str(Path(_jit._kernel_cache("dynamics")).parent)
+    cache = str(_jit.cache_folder())
     return Threading(processor().usable, width, cache)
 
 

@@ -19,8 +19,8 @@ def environment() -> dict[str, str]:
     return os.environ | {"PYTHONPATH": path}
 
 
-def run_elsewhere(module: str, device: str, *arguments: str, choices: dict[str, str] | None = None) -> None:
+def run_elsewhere(module: str, device: str, *arguments: str) -> None:
     """Run a module; its process simulates a GPU if it is asked for one and there is none."""
     simulated = SIMULATED if device == "cuda" and isinstance(gpus(), str) else {}
     command = [sys.executable, "-m", module, *arguments]
-    subprocess.run(command, env=environment() | simulated | (choices or {}), check=True)
+    subprocess.run(command, env=environment() | simulated, check=True)

@@ -9,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from support.elsewhere import environment
+
 FIRST_RUN = """
+{first}
 import os
 import numpy as np, numba
 from wrinklewave import compiling
@@ -34,12 +37,11 @@ print(before, started, after, children, strip_mean(np.ones((2, 2), np.float32), 
 """
 
 
-def first_run(cache: Path, *, cores: int = 2, interrupted: bool = False) -> str:
-    """What a process with a cold cache says."""
-    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+def first_run(cache: Path, *, first: str = "", cores: int = 2, interrupted: bool = False) -> str:
+    """What a process with a cold cache says, which does ``first`` before all."""
     return subprocess.run(
-        [sys.executable, "-c", FIRST_RUN.format(cores=cores, interrupted=interrupted)],
-        env=environment | {"XDG_CACHE_HOME": str(cache)},
+        [sys.executable, "-c", FIRST_RUN.format(first=first, cores=cores, interrupted=interrupted)],
+        env=environment() | {"NUMBA_CACHE_DIR": str(cache)},
         capture_output=True,
         text=True,
         check=True,
@@ -60,3 +62,9 @@ def test_an_interrupt_ends_the_other_process(tmp_path: Path) -> None:
 @pytest.mark.skipif(os.name != "posix", reason="asks for children as POSIX systems do")
 def test_one_core_has_no_process_beside(tmp_path: Path) -> None:
     assert first_run(tmp_path, cores=1) == "False False False False [1. 1.]"
+
+
+@pytest.mark.skipif(os.name != "posix", reason="asks for children as POSIX systems do")
+def test_no_other_process_compiles_for_one_with_laws_of_its_own(tmp_path: Path) -> None:
+    assert first_run(tmp_path) == "False True True False [1. 1.]"
+    assert first_run(tmp_path, first="import support.new_law") == "False False False False [1. 1.]"
