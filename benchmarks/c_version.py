@@ -6,6 +6,7 @@ import ctypes
 import shutil
 import subprocess
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,8 @@ SOURCE = Path(__file__).with_name("yardstick.c")
 FLAGS = ("-O3", "-march=native", "-ffast-math", "-fPIC")
 WIDTHS = {"default": (), "512 bit": ("-mprefer-vector-width=512",)}
 """Vector widths that gcc may prefer; which is faster depends on the processor."""
+LOOPS = {"one loop": (), "two loops": ("-DTWO_LOOPS",)}
+"""The arithmetic of an element in one loop, or J^(-1/3) in a loop of its own, as the package has it."""
 
 Double = ctypes.POINTER(ctypes.c_double)
 ARRAYS = ("X", "Y", "u", "w", "vx", "vy", "inverse_mass")
@@ -47,10 +50,11 @@ class Block(ctypes.Structure):
 
 
 def compiled(folder: Path) -> dict[str, ctypes.CDLL]:
-    """The yardstick for each preferred vector width; empty where there is no gcc."""
+    """The yardstick in all its forms; empty where there is no gcc."""
     if shutil.which("gcc") is None:
         return {}
-    return {name: _compile(folder / f"yardstick{i}", flags) for i, (name, flags) in enumerate(WIDTHS.items())}
+    forms = {f"{width}, {loops}": (*WIDTHS[width], *LOOPS[loops]) for width, loops in product(WIDTHS, LOOPS)}
+    return {name: _compile(folder / f"yardstick{i}", flags) for i, (name, flags) in enumerate(forms.items())}
 
 
 def _compile(stem: Path, flags: tuple[str, ...]) -> ctypes.CDLL:

@@ -42,6 +42,18 @@ static inline double inverse_cube_root(double J) {
     return nearer(nearer(1.8257 - J * (1.0325 - 0.2369 * J), J), J);
 }
 
+/* J^(-1/3) at the centre of element i, between two rows of nodes. */
+static inline double root_at(long i, In X0, In X1, In Y0, In Y1, In u0, In u1, In w0, In w1) {
+    long k = i + 1;
+    double x13 = X0[i] - X1[k], y13 = Y0[OF_ROW(i)] - Y1[OF_ROW(k)];
+    double x24 = X0[k] - X1[i], y24 = Y0[OF_ROW(k)] - Y1[OF_ROW(i)];
+    double u13 = u0[i] - u1[k], u24 = u0[k] - u1[i], w13 = w0[i] - w1[k], w24 = w0[k] - w1[i];
+    double inverse = 1.0 / (x13 * y24 - x24 * y13);
+    double G11 = (y24 * u13 - y13 * u24) * inverse, G12 = (x13 * u24 - x24 * u13) * inverse;
+    double G21 = (y24 * w13 - y13 * w24) * inverse, G22 = (x13 * w24 - x24 * w13) * inverse;
+    return inverse_cube_root(1.0 + (G11 + G22 + G11 * G22 - G12 * G21));
+}
+
 static inline double remember(double *restrict Z, long i, double shape, double b, double decay, double b_next) {
     double H = Z[i] + b * shape;
     Z[i] = decay * H - b_next * shape;
@@ -54,6 +66,9 @@ static void element_row(long n, In X0, In Y0, In Y1, In u0, In w0, In u1, In w1,
                         double quadratic, double hourglass, double b, double decay, double b_next, InOut f1x, InOut f1y,
                         InOut f2x, InOut f2y, InOut f3x, InOut f3y, InOut f4x, InOut f4y) {
     In X1 = X_ABOVE(X0, n);
+#ifdef TWO_LOOPS /* J^(-1/3), a chain of operations that wait for each other, by itself; it lies where f1x will be */
+    for (long i = 0; i < n; i++) f1x[i] = root_at(i, X0, X1, Y0, Y1, u0, u1, w0, w1);
+#endif
     for (long i = 0; i < n; i++) {
         long k = i + 1;
         double x13 = X0[i] - X1[k], y13 = Y0[OF_ROW(i)] - Y1[OF_ROW(k)];
@@ -71,7 +86,12 @@ static void element_row(long n, In X0, In Y0, In Y1, In u0, In w0, In u1, In w1,
         qy -= hX * G21 + hY * G22;
 
         double F11 = 1.0 + G11, F22 = 1.0 + G22, e = G11 + G22 + G11 * G22 - G12 * G21, J = 1.0 + e;
-        double root = inverse_cube_root(J), J23 = root * root, Ji = J23 * root;
+#ifdef TWO_LOOPS
+        double root = f1x[i];
+#else
+        double root = inverse_cube_root(J);
+#endif
+        double J23 = root * root, Ji = J23 * root;
         double C11 = F11 * F11 + G21 * G21, C22 = G12 * G12 + F22 * F22, C12 = F11 * G12 + G21 * F22;
         double t = (C11 + C22 + 1.0) * (1.0 / 3.0), tj = t * (Ji * Ji);
         double s11 = 1.0 - tj * C22, s22 = 1.0 - tj * C11, s12 = tj * C12, s33 = 1.0 - t;

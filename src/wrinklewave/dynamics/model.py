@@ -184,12 +184,12 @@ def assemble(
     runs, first_run = material_runs(mesh.layer)
     nodes = mesh.X.shape
     X, Y = np.ascontiguousarray(mesh.X, number), np.ascontiguousarray(mesh.Y, number)
-    is_plain = not (np.ptp(X, axis=0).any() or np.ptp(Y, axis=1).any())
+    straight, level = not np.ptp(X, axis=0).any(), not np.ptp(Y, axis=1).any()
     arrays = Arrays(
         X=X,
         Y=Y,
-        x=X[0] if is_plain else X,
-        y=np.ascontiguousarray(Y[:, 0]) if is_plain else Y,
+        x=X[0] if straight else X,
+        y=np.ascontiguousarray(Y[:, 0]) if level else Y,
         u=np.zeros(nodes, number),
         w=np.zeros(nodes, number),
         vx=np.zeros(nodes, number),

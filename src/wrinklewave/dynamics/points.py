@@ -46,14 +46,14 @@ def corners(field, j, i):
 
 @scalar
 def corners_x(X, j, i):
-    """Undeformed x at the corners of element (j, i); ``X`` [n_columns] by column if the mesh is a plain grid."""
+    """Undeformed x at the corners of element (j, i); ``X`` [n_columns] by column if columns are straight."""
     if X.ndim == 1:
         return X[i], X[i + uintp(1)], X[i + uintp(1)], X[i]
     return corners(X, j, i)
 
 
 def corners_y(Y, j, i):
-    """Undeformed y at the corners of element (j, i); ``Y`` are two heights, below and above, on a plain grid."""
+    """Undeformed y at the corners of element (j, i); ``Y`` are two heights, below and above, if rows are level."""
     return (Y[0], Y[0], Y[1], Y[1]) if isinstance(Y, tuple) else corners(Y, j, i)
 
 

@@ -56,7 +56,7 @@ def relaxed(memory, r, i, b, a, b_next, shape):
 
 @scalar
 def differences_of_x(X, j, i):
-    """Of undeformed x; ``X`` [n_columns] by column if the mesh is a plain grid."""
+    """Of undeformed x; ``X`` [n_columns] by column if columns are straight."""
     if X.ndim == 1:
         width = X[i] - X[i + ONE]
         return width, -width, 0.0

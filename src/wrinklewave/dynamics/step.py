@@ -55,8 +55,8 @@ class Arrays(NamedTuple):
 
     X: np.ndarray
     Y: np.ndarray
-    x: np.ndarray  # as elements read X: by column where the mesh is a plain grid, else X itself
-    y: np.ndarray  # as elements read Y: by row, or Y itself
+    x: np.ndarray  # as elements read X: by column where all its columns are straight, else X itself
+    y: np.ndarray  # as elements read Y: by row where all its rows are level, else Y itself
     u: np.ndarray
     w: np.ndarray
     vx: np.ndarray
