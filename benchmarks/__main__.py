@@ -7,8 +7,6 @@ element updates per second (best of all repetitions) and the ratio to the fastes
 from __future__ import annotations
 
 import argparse
-import datetime
-import json
 import tempfile
 import time
 from collections.abc import Callable
@@ -17,10 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.c_version import CVersion, compiled
+from benchmarks.machine import description, keep, offer_to_keep
 from benchmarks.numba_version import NumbaVersion
 from benchmarks.numpy_version import NumpyVersion
 from benchmarks.problem import STATE, Problem, problem
-from wrinklewave.environment import processor, versions
+from wrinklewave.environment import processor
 
 SIZES = (10_000, 15_000, 100_000, 1_000_000, 4_000_000)
 QUICK_SIZES = (10_000, 100_000)
@@ -123,22 +122,17 @@ HEADING = "| " + " | ".join(COLUMNS) + " |\n|" + " --- |" * len(COLUMNS)
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--quick", action="store_true", help="two sizes, fewer repetitions")
-    parser.add_argument("--out", type=Path, help="also write the numbers as JSON")
+    offer_to_keep(parser)
     options = parser.parse_args()
     threads = min(2, processor().usable)
-    found: dict[str, object] = {
-        "date": str(datetime.date.today()),
-        "machine": processor().name,
-        "versions": versions(),
-    }
+    machine, rates = description(), {}
     with tempfile.TemporaryDirectory() as scratch:
         differences = check(QUICK_SIZES[0], Path(scratch))
         for name, found_difference in differences.items():
             if not found_difference < TOLERANCE:
                 raise SystemExit(f"{name} differs by {found_difference:.1e} after {CHECKED_STEPS} steps")
         bandwidth = copy_bandwidth()
-        found |= {"differences_after_50_steps": differences, "copy_bytes_per_s": bandwidth, "rates": {}}
-        print(f"{found['machine']}, {found['date']}; million element updates per second")
+        print(f"{machine['processor']}, {machine['date']}; million element updates per second")
         print(
             f"C and NumPy agree with it to {max(differences.values()):.1e} after {CHECKED_STEPS} steps; "
             f"copy {bandwidth / 1e9:.1f} GB/s;"
@@ -147,11 +141,10 @@ def main() -> None:
             f"{STATE_BYTES} bytes kept per element, {TRAFFIC_BYTES} moved per update\n\n{HEADING}", flush=True
         )
         for size in QUICK_SIZES if options.quick else SIZES:
-            rates = measure(size, Path(scratch), threads, 3 if options.quick else 6)
-            found["rates"][size] = rates  # type: ignore[index]
-            print(line(size, rates, bandwidth), flush=True)
-    if options.out:
-        options.out.write_text(json.dumps(found, indent=1) + "\n")
+            rates[size] = measure(size, Path(scratch), threads, 3 if options.quick else 6)
+            print(line(size, rates[size], bandwidth), flush=True)
+    found = {"differences_after_50_steps": differences, "copy_bytes_per_s": bandwidth, "rates": rates}
+    keep(found, options.out)
 
 
 if __name__ == "__main__":

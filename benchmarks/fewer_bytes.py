@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import ctypes
-import json
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ import numpy as np
 from benchmarks import parts
 from benchmarks.c_version import FLAGS, LOOPS, SOURCE, WIDTHS
 from benchmarks.limits import best_rates
-from benchmarks.machine import description
+from benchmarks.machine import keep, offer_to_keep
 from benchmarks.problem import PLATE_SPEED, Problem, problem
 from wrinklewave.dynamics.step import update_factors
 
@@ -137,7 +136,7 @@ def error(library: ctypes.CDLL, variant: Variant, exact: np.ndarray | None) -> t
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="elements")
-    parser.add_argument("--out", type=Path, help="also write the numbers as JSON")
+    offer_to_keep(parser)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         libraries = {
@@ -158,10 +157,7 @@ def main() -> None:
     for name, variant in VARIANTS.items():
         gains = (f"{rates[s][name] / 1e6:.0f} ({rates[s][name] / rates[s]['as it is']:.2f})" for s in rates)
         print(f"| {name} | {variant.bytes} | {' | '.join(gains)} | {errors[name]:.1e} |")
-    if options.out:
-        options.out.write_text(
-            json.dumps(description() | {"rates": rates, "errors": errors}, indent=1) + "\n"
-        )
+    keep({"rates": rates, "errors": errors}, options.out)
 
 
 if __name__ == "__main__":

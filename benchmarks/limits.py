@@ -8,7 +8,6 @@ measured in the same run, in turns with the stepping.
 from __future__ import annotations
 
 import argparse
-import json
 import tempfile
 import time
 from collections.abc import Callable
@@ -18,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.c_version import CVersion, compiled
-from benchmarks.machine import arithmetic_rate, copy_bandwidth, description
+from benchmarks.machine import arithmetic_rate, copy_bandwidth, description, keep, offer_to_keep
 from benchmarks.numba_version import NumbaVersion
 from benchmarks.operations import per_update
 from benchmarks.problem import problem
@@ -101,7 +100,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=float, nargs="+", default=SIZES, help="elements")
     parser.add_argument("--repetitions", type=int, default=4)
-    parser.add_argument("--out", type=Path, help="also write the numbers as JSON")
+    offer_to_keep(parser)
     options = parser.parse_args()
     threads = min(2, processor().usable)
     counted = per_update()
@@ -122,9 +121,8 @@ def main() -> None:
         for size in options.sizes:
             found.append(measure(size, libraries, threads, options.repetitions))
             print(line(found[-1], moved["moved"], operations, rates[1]), flush=True)
-    if options.out:
-        kept = {"operations": counted, "bytes": moved, "arithmetic_per_s": rates, "meshes": found}
-        options.out.write_text(json.dumps(machine | kept, indent=1) + "\n")
+    kept = {"operations": counted, "bytes": moved, "arithmetic_per_s": rates, "meshes": found}
+    keep(kept, options.out)
 
 
 if __name__ == "__main__":

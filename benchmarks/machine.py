@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import argparse
 import datetime
+import json
 import subprocess
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -30,6 +32,17 @@ def description() -> dict[str, Any]:
         "gpu": found if isinstance(found, str) else found[0].name,
         "versions": versions(),
     }
+
+
+def offer_to_keep(parser: argparse.ArgumentParser) -> None:
+    """Let a benchmark be told where its numbers go."""
+    parser.add_argument("--out", type=Path, help="also write the numbers as JSON")
+
+
+def keep(numbers: dict[str, Any], path: Path | None) -> None:
+    """Write what was measured, and on what, if there is a ``path`` for it."""
+    if path:
+        path.write_text(json.dumps(description() | numbers, indent=1) + "\n", encoding="utf-8")
 
 
 def _commit() -> str:

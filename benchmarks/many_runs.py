@@ -7,12 +7,11 @@ from nothing to the table of results, start of the processes included, and by th
 from __future__ import annotations
 
 import argparse
-import json
 import tempfile
 import time
 from pathlib import Path
 
-from benchmarks.machine import description
+from benchmarks.machine import keep, offer_to_keep
 from benchmarks.problem import PAPER_CASE
 from wrinklewave.environment import processor
 from wrinklewave.experiments.sweep import sweep
@@ -42,7 +41,7 @@ def runs_per_minute(bulk: str, jobs: int) -> dict[str, float]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, help="also write the numbers as JSON")
+    offer_to_keep(parser)
     options = parser.parse_args()
     print("| bulk | at a time | runs per minute, the whole sweep | once it runs |\n| --- | --- | --- | --- |")
     found = {}
@@ -50,8 +49,7 @@ def main() -> None:
         for jobs in range(1, processor().usable + 1):
             found[f"{name}, {jobs} at a time"] = rates = runs_per_minute(bulk, jobs)
             print(f"| {name} | {jobs} | {rates['whole']:.0f} | {rates['pace']:.0f} |", flush=True)
-    if options.out:
-        options.out.write_text(json.dumps(description() | found, indent=1) + "\n")
+    keep(found, options.out)
 
 
 if __name__ == "__main__":

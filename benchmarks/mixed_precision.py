@@ -5,11 +5,13 @@ Element updates per second of the whole step, in turns, best of all repetitions;
 
 from __future__ import annotations
 
+import argparse
 import time
 
 import numpy as np
 
 import wrinklewave as ww
+from benchmarks.machine import keep, offer_to_keep
 from benchmarks.numba_version import NumbaVersion
 from benchmarks.problem import PAPER_CASE, problem
 
@@ -50,17 +52,24 @@ def differences() -> dict[str, float]:
 
 
 def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    offer_to_keep(parser)
+    options = parser.parse_args()
+    measured = []
     print("| elements | threads | double | mixed | gain |\n| --- | --- | --- | --- | --- |")
     for size in SIZES:
         for threads in (1, 2):
             found = rates(size, threads)
+            measured.append({"elements": size, "threads": threads, **found})
             double, mixed = (found[p] for p in PRECISIONS)
             print(
                 f"| {size:,} | {threads} | {double / 1e6:.0f} | {mixed / 1e6:.0f} | {mixed / double:.2f} |",
                 flush=True,
             )
-    for name, value in differences().items():
+    changes = differences()
+    for name, value in changes.items():
         print(f"{name}: {value:.1e}")
+    keep({"rates": measured, "differences": changes}, options.out)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks import parts
-from benchmarks.machine import description
+from benchmarks.machine import keep, offer_to_keep
 from wrinklewave.dynamics.simulation import Simulation
 from wrinklewave.environment import processor
 from wrinklewave.experiments.recording import FieldStore, Recording, SurfaceRecorder
@@ -73,7 +73,7 @@ def cost(K: float, threads: int, folder: Path, repetitions: int = 3) -> dict[str
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--out", type=Path, help="also write the numbers as JSON")
+    offer_to_keep(parser)
     options = parser.parse_args()
     found: dict[str, dict[str, float]] = {}
     with tempfile.TemporaryDirectory() as scratch:
@@ -81,8 +81,7 @@ def main() -> None:
             for threads in range(1, min(2, processor().usable) + 1):
                 found[f"{name}, {threads} threads"] = result = cost(K, threads, Path(scratch))
                 print(f"{name}, {threads} threads: {json.dumps(result)}", flush=True)
-    if options.out:
-        options.out.write_text(json.dumps(description() | found, indent=1) + "\n")
+    keep(found, options.out)
 
 
 if __name__ == "__main__":

@@ -5,10 +5,13 @@ Run it as ``python -m benchmarks.subcycling``; about two minutes on two cores.
 
 from __future__ import annotations
 
+import argparse
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from benchmarks.machine import keep, offer_to_keep
 from wrinklewave.experiments.simulate import Run, simulate
 
 CASE = Path(__file__).parents[1] / "examples" / "paper_resolved.toml"
@@ -35,21 +38,36 @@ def distance(run: Run, reference: Run) -> float:
     return float(np.hypot(x, y).max())
 
 
+def of_run(run: Run, reference: Run) -> dict[str, float]:
+    """What a run took, and how far it is from another."""
+    s: dict[str, Any] = run.summary
+    return {
+        "stepping_s": s["stepping_time_s"],
+        "whole_s": s["wall_time_s"],
+        "steps": s["steps"],
+        "element_updates": s["element_updates_per_s"] * s["stepping_time_s"],
+        "energy_imbalance_max": s["energy_imbalance_max"],
+        "surface_off_by_m": distance(run, reference),
+        **{f"change of {name}": s[name] / reference.summary[name] - 1 for name in NUMBERS},
+    }
+
+
 def main() -> None:
-    reference = None
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    offer_to_keep(parser)
+    options = parser.parse_args()
+    reference, found = None, {}
     for threads in (1, 2):
         for name, overrides in CHOICES.items():
             run = simulate(CASE, threads=threads, overrides=list(overrides))
             reference = reference or run
-            s = run.summary
-            changes = ", ".join(f"{n} {s[n] / reference.summary[n] - 1:+.1e}" for n in NUMBERS)
-            updates = s["element_updates_per_s"] * s["stepping_time_s"]
+            found[f"{name}, {threads} threads"] = numbers = of_run(run, reference)
             print(
-                f"{name}, {threads} thread(s): stepping {s['stepping_time_s']:.2f} s, whole {s['wall_time_s']:.2f} s, "
-                f"{s['steps']} steps, {updates / 1e6:.0f} million updates, imbalance {s['energy_imbalance_max']:.1e}, "
-                f"surface off by {distance(run, reference) * 1e6:.2f} um, {changes}",
+                f"{name}, {threads} thread(s):",
+                ", ".join(f"{n} {v:.3g}" for n, v in numbers.items()),
                 flush=True,
             )
+    keep(found, options.out)
 
 
 if __name__ == "__main__":
