@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 import re
-import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -104,8 +103,11 @@ _KERNELS = {name: getattr(kernels, name) for name in ("steps", "sample", "snapsh
 
 
 def resources(ptx: str) -> Resources:
-    """Registers of a kernel and bytes that it spills, as ptxas says; nothing if there is no ptxas."""
-    ptxas = next(Path(sys.prefix).rglob("ptxas"), None) or shutil.which("ptxas")
+    """Registers of a kernel and bytes that it spills, as ptxas says; nothing if there is no ptxas.
+
+    It must be that of the compilers in use, nvidia-cuda-nvcc beside them: an older one does not take what they make.
+    """
+    ptxas = next(Path(sys.prefix).rglob("ptxas"), None)
     if ptxas is None:
         return {}
     with TemporaryDirectory() as folder:
