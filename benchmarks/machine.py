@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
+import os
 import subprocess
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -29,6 +30,7 @@ def description() -> dict[str, Any]:
         "commit": _commit(),
         "processor": processor().name,
         "cores": processor().usable,
+        "compiled_for": os.environ.get("NUMBA_CPU_NAME", "this processor"),
         "gpu": found if isinstance(found, str) else found[0].name,
         "versions": versions(),
     }
