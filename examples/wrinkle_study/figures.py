@@ -104,7 +104,7 @@ def onsets(panel: plt.Axes, member: Member) -> None:
     for (model, style), colour in zip(STYLES.items(), COLOURS, strict=True):
         arrivals = arrival_times(time, amplitudes(member, model, X), wanted)
         panel.plot(X * 1e3, arrivals * 1e3, style, color=colour, lw=1.4, label=model)
-    panel.set_ylim(0, time[-1] * 1e3)
+    panel.set_ylim(bottom=0)
 
 
 def draw_paper(members: Mapping[str, Member]) -> plt.Figure:
@@ -189,9 +189,9 @@ def draw_agreement(members: list[Member]) -> plt.Figure:
         axes[1].plot(fit.onset, row, "o", color="#0000a7")
     axes[0].set(
         xlabel="amplitude over resolved\nmedian, 5 to 95 % of points and times, | of the mean",
-        xlim=(0.58, 1.42),
+        xlim=(0.58, 1.45),
     )
-    axes[1].set(xlabel="onset time over resolved\nmedian of the points", xlim=(0.85, 1.15))
+    axes[1].set(xlabel="onset time over resolved\nmedian of the points", xlim=(0.87, 1.13))
     axes[0].set_yticks(range(len(members)), [label(member.name) for member in members])
     axes[0].invert_yaxis()
     for panel in axes:

@@ -121,15 +121,25 @@ def draw(wrinkles: Modes, case: Case, exact: Bifurcation, X, x_p, y_p) -> plt.Fi
     left.plot(
         *zip(*[(e, a * case.film.thickness * 1e3) for e, a in EXACT], strict=True), "ko", ms=5, label="exact"
     )
-    for at in doubling_strains(wrinkles, MODE):
-        left.axvline(at, color="0.7", lw=0.8)
+    for at, name in zip(doubling_strains(wrinkles, MODE), ("doubles", "simple again"), strict=True):
+        left.axvline(at, color="0.7", lw=0.8, zorder=0)
+        left.annotate(
+            name,
+            (at, 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, 2),
+            textcoords="offset points",
+            ha="left" if name == "doubles" else "right",
+            fontsize=8,
+            color="0.4",
+        )
     left.set(xlabel="nominal strain", ylabel="amplitude of the mode (mm)", xlim=(0, 0.255), ylim=(0, None))
     left.legend(frameon=False, fontsize=8)
     for number, at in enumerate((0.10, 0.18, 0.21, 0.25)):
         row = int(np.argmin(np.abs(wrinkles.strain[: top + 1] - at)))
         height = y_p[row] - y_p[row].mean()
         right.plot((x_p[row] - x_p[row, 0]) * 1e3, height * 1e3 - 1.3 * number, color="black", lw=1.2)
-        right.text(9.3, -1.3 * number, f"{at:g}", va="center")
+        right.text(8.7, -1.3 * number, f"strain {at:.2f}", va="center", fontsize=8)
     right.set(
         xlabel="along the film (mm)", ylabel="height (mm), curves set off", xlim=(0, 10), aspect="equal"
     )

@@ -69,6 +69,22 @@ def test_members_are_cases(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len({study.folder(entry["name"]) for entry, _ in members}) == len(members)
 
 
+def test_cells_show_uncertainties_and_what_there_is_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "path", [str(EXAMPLES / "wrinkle_study"), *sys.path])
+    import study
+
+    row = {
+        "ratio": 0.9555,
+        "ratio_sigma": 0.066,
+        "delay_s": 7.09e-4,
+        "speed": float("nan"),
+        "speed_sigma": 1.0,
+    }
+    assert study.cell(row, "ratio", 1, ".2f") == "0.96 ± 0.07"
+    assert study.cell(row, "delay_s", 1e3, ".2f") == "0.71"
+    assert study.cell(row, "nothing", 1, ".2f") == study.cell({}, "speed", 1, ".2f") == "-"
+
+
 def test_finished_runs_are_used_again(tmp_path: Path) -> None:
     case = load_case(
         EXAMPLES / "quick.toml", ["mesh.elements=[40, 12]", "solver.end_time=0.2 ms", "analysis.times=[]"]

@@ -5,6 +5,7 @@ Amplitudes are compared at material points, away from both ends, where wrinkles 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -212,6 +213,13 @@ def member_rows(member: Member) -> list[dict[str, str | float]]:
         row["amplitude_over_quasi_static"] = number["wrinkle_amplitude_max_m"] / _number(
             expected, "wrinkle_amplitude_max_m"
         )
+        uncertain = [
+            _number(summary, f"{front}_speed_sigma_m_per_s") / number[f"{front}_speed_m_per_s"]
+            for front in ("wrinkle", "wavefront")
+        ]
+        row["wrinkle_to_wavefront_speed_ratio_sigma"] = number[
+            "wrinkle_to_wavefront_speed_ratio"
+        ] * math.hypot(*uncertain)
         row["origin_line_speed_ratio"] = (
             number["wrinkle_speed_origin_line_m_per_s"] / number["wavefront_speed_origin_line_m_per_s"]
         )
