@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from support.bilayers import film_on_block, struck_bilayer
 from support.models import K_0, MU_0, MU_1, RHO, TAU, Array, build, distorted, elastic, history, relaxing
 from wrinklewave.dynamics.asking import answered_together
 from wrinklewave.dynamics.backends import Device, March, Sample
@@ -22,7 +23,7 @@ from wrinklewave.dynamics.boundary import (
     Boundary,
 )
 from wrinklewave.dynamics.drives import cubic_segments
-from wrinklewave.dynamics.model import AT_REST, Model, assemble
+from wrinklewave.dynamics.model import AT_REST, Model, assemble, subcycled
 from wrinklewave.dynamics.simulation import Simulation
 from wrinklewave.errors import RunError
 from wrinklewave.materials.moduli import Viscoelastic
@@ -32,6 +33,7 @@ EVENTS = np.array([0.0, 0.4e-4, 1e-4])
 """An even and an uneven number of steps, and a change of their length."""
 KNOTS = np.linspace(0.0, 1e-3, 9)
 PUSH = cubic_segments(KNOTS, lambda t: 3e3 * t**2, lambda t: 6e3 * t)
+STRIKE = cubic_segments(KNOTS, lambda t: 10.0 * t, lambda t: 10.0 + 0.0 * t)
 SHEAR = cubic_segments(KNOTS, lambda t: 1e3 * t**2, lambda t: 2e3 * t)
 
 
@@ -46,7 +48,7 @@ def struck(precision: str = "double") -> Model:
         bottom=ROLLER,
         wall=True,
         friction=0.05,
-        motion=cubic_segments(KNOTS, lambda t: 10.0 * t, lambda t: 10.0 + 0.0 * t),
+        motion=STRIKE,
         bulk_viscosity=(0.06, 1.2),
         precision=precision,
     )
@@ -66,7 +68,7 @@ GROOVE = np.array(
 """A surface with an undercut groove [mm]: it overhangs."""
 
 
-def grooved() -> Model:
+def grooved(*, film: bool = False) -> Model:
     """The lips of a groove pass each other; more nodes than the simulated GPU has threads."""
     share = np.linspace(0.0, 1.0, 6)[:, None]
     mesh = GridMesh(
@@ -74,15 +76,43 @@ def grooved() -> Model:
         Y=share * GROOVE[:, 1] * 1e-3,
         layer=np.zeros((5, 12), dtype=np.int64),
     )
+    mesh.layer[-1] = film
     boundary = Boundary(
         *(LEFT_HELD, FIXED, FREE, FREE, False, 10e-3, 0.0, PUSH, AT_REST, np.zeros((3, 4, 13))),
         bins=np.zeros((3, 2, 13), dtype=np.int64),
     )
-    model = assemble(mesh, [relaxing(bulk=False)], boundary)
+    solids = [relaxing(bulk=False), *([elastic(mu=4e6, K=1e8)] if film else [])]
+    model = assemble(mesh, solids, boundary)
     closing = np.array([0, 0.4, 0.8, 1.2, 1.15, 0.5, 0, -0.5, -1.15, -1.2, -0.8, -0.4, 0]) * 1e-3
     model.arrays.u[:] = share * closing
-    model.arrays.vx[:] = 1e4 * share * closing
-    return model
+    model.arrays.vx[:] = (3e4 if film else 1e4) * share * closing
+    return subcycled(model) if film else model
+
+
+def filmed_groove() -> Model:
+    """As :func:`grooved`, with a stiff skin whose rows have steps of their own."""
+    return grooved(film=True)
+
+
+def filmed(ratio: float = 42.0, precision: str = "double", **mesh: float) -> Model:
+    """A plate strikes a block with a film; rows of elements have steps of their own."""
+    squares = film_on_block(columns=6, rows=4, size=1e-3, **mesh)
+    return struck_bilayer(mesh=squares, ratio=ratio, precision=precision, motion=STRIKE)
+
+
+def filmed_in_mixed() -> Model:
+    """As :func:`filmed`, with state and elements in single precision."""
+    return filmed(precision="mixed")
+
+
+def filmed_softly() -> Model:
+    """As :func:`filmed`; the film's steps are fewer to one of the substrate's."""
+    return filmed(ratio=3.0)
+
+
+def filmed_evenly() -> Model:
+    """As :func:`filmed`, with a film in rows like those below; all take one step."""
+    return filmed(ratio=1.5, thickness=2.0)
 
 
 def bilayer() -> Model:
@@ -136,10 +166,12 @@ BATCHES: tuple[tuple[Callable[[], Model], ...], ...] = (
     (struck, overrun, compressed),
     (sheared, sheared_otherwise),
     (grooved_softly, grooved),
+    (filmed_evenly, filmed, filmed_softly),
 )
 """Members have one shape; their materials, meshes, edges, histories and steps differ."""
 MODELS: dict[str, Callable[[], Model]] = {
-    f.__name__: f for f in (struck, mixed, grooved, bilayer, sheared, compressed)
+    f.__name__: f
+    for f in (struck, mixed, grooved, bilayer, sheared, compressed, filmed, filmed_in_mixed, filmed_groove)
 }
 
 
@@ -179,4 +211,7 @@ def results(simulation: Simulation) -> dict[str, Array]:
     simulation.backend.fetch_all()
     a = simulation.model.arrays
     state = {"u": a.u, "w": a.w, "vx": a.vx, "vy": a.vy, "memory": simulation.model.memory}
+    if simulation.model.row_steps is not None:
+        state |= {f"rows_{name}": values for name, values in simulation.model.row_steps._asdict().items()}
+    state |= {"counts": simulation.counts}
     return state | {"fields": simulation.fields(), "totals": simulation.totals} | history(simulation)

@@ -1,12 +1,14 @@
 """Runs of the small models on one device, a restart, and a case by its file.
 
 ``python -m support.backend_runs DEVICE FILE.npz`` in a process of its own, since numba decides when it is imported
-whether CUDA is simulated.
+whether CUDA is simulated. It leaves a checkpoint beside the file, and goes on from that of another device if one is
+there.
 """
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,6 +18,8 @@ from support.backend_models import (
     BATCHES,
     MODELS,
     compressed,
+    filmed,
+    filmed_softly,
     results,
     run,
     run_together,
@@ -31,27 +35,40 @@ from wrinklewave.dynamics.simulation import Simulation
 from wrinklewave.errors import RunError
 from wrinklewave.experiments.simulate import simulate
 
+RESTARTED = (struck, filmed)
 
-def half_done(device: Device) -> Simulation:
-    """That of :func:`struck` from a checkpoint in the middle."""
+
+def write_half(model: Model, device: Device, file: Path) -> None:
+    """Write a checkpoint in the middle of a run."""
+    simulation = simulation_of(model, device)
+    events = simulation.run()
+    next(events)
+    next(events)
+    write_checkpoint(file, simulation, Record({"nothing": np.zeros(1)}), "")
+
+
+def half_done(model: Callable[[], Model], device: Device) -> Simulation:
+    """That of a model from a checkpoint in the middle."""
+    second = simulation_of(model(), device)
     with TemporaryDirectory() as folder:
         file = Path(folder) / "checkpoint.h5"
-        first = simulation_of(struck(), device)
-        events = first.run()
-        next(events)
-        next(events)
-        write_checkpoint(file, first, Record({"nothing": np.zeros(1)}), "")
-        second = simulation_of(struck(), device)
+        write_half(model(), device, file)
         read_checkpoint(file, second, "")
     return second
 
 
-def restarted(device: Device) -> dict[str, Array]:
-    """As :func:`run` of :func:`struck`, through a checkpoint in the middle."""
-    second = half_done(device)
-    for _ in second.run():
+def finished(simulation: Simulation) -> dict[str, Array]:
+    """What a run leaves behind that goes on from a checkpoint."""
+    for _ in simulation.run():
         pass
-    return results(second)
+    return results(simulation)
+
+
+def continued(model: Model, device: Device, checkpoint: Path) -> dict[str, Array]:
+    """As :func:`run`, from a checkpoint on, whichever device it comes from."""
+    simulation = simulation_of(model, device)
+    read_checkpoint(checkpoint, simulation, "")
+    return finished(simulation)
 
 
 def of_batches() -> dict[str, dict[str, Array]]:
@@ -60,7 +77,9 @@ def of_batches() -> dict[str, dict[str, Array]]:
     for members in BATCHES:
         done = run_together([simulation_of(model(), "cuda") for model in members])
         found |= {f"together_{model.__name__}": of for model, of in zip(members, done, strict=True)}
-    _, found["together_restarted"] = run_together([simulation_of(compressed(), "cuda"), half_done("cuda")])
+    for first, model in ((compressed, struck), (filmed_softly, filmed)):
+        both = [simulation_of(first(), "cuda"), half_done(model, "cuda")]
+        found[f"together_restarted_{model.__name__}"] = run_together(both)[1]
     return {name: as_arrays(of) for name, of in found.items()}
 
 
@@ -93,7 +112,12 @@ def main(device: Device, file: str) -> None:
         1e-4
     )  # the simulator's threads wait for each other far more often than they compute
     runs = {name: run(model(), device) for name, model in MODELS.items()}
-    runs |= {"restarted": restarted(device), "from_case": from_case(device)}
+    runs |= {f"restarted_{model.__name__}": finished(half_done(model, device)) for model in RESTARTED}
+    runs |= {"from_case": from_case(device)}
+    folder, other = Path(file).parent, "cpu" if device == "cuda" else "cuda"
+    write_half(filmed(), device, folder / f"{device}.h5")
+    if (folder / f"{other}.h5").exists():
+        runs["continued"] = continued(filmed(), device, folder / f"{other}.h5")
     if device == "cuda":
         others = (model for members in BATCHES for model in members if model.__name__ not in runs)
         runs |= {model.__name__: as_arrays(alone(model())) for model in others} | of_batches()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from support.models import RHO, TAU, elastic
+from support.models import RHO, TAU, Array, elastic
 from wrinklewave.dynamics.boundary import FIXED, FREE, LEFT_FREE, LEFT_STRUCK, ROLLER, Boundary
 from wrinklewave.dynamics.drives import cubic_segments
 from wrinklewave.dynamics.model import AT_REST, Model, assemble, subcycled
@@ -19,42 +19,47 @@ KNOTS = np.linspace(0.0, 1e-3, 9)
 STRIKE = cubic_segments(KNOTS, lambda t: 3e3 * t**2, lambda t: 6e3 * t)
 
 
-def film_on_block() -> GridMesh:
-    """Squares with a film half a square thick in two rows; the interior nodes of the substrate displaced at random."""
+def film_on_block(
+    *, columns: int = COLUMNS, rows: int = SUBSTRATE_ROWS, size: float = SIZE, thickness: float = 0.5
+) -> GridMesh:
+    """Squares with a film in two rows, half a square thick; the interior nodes of the substrate displaced at random."""
     mesh = bilayer(
-        length=COLUMNS * SIZE,
+        length=columns * size,
         bottom=0.0,
-        top=(SUBSTRATE_ROWS + 0.5) * SIZE,
-        thickness=0.5 * SIZE,
-        columns=COLUMNS,
-        substrate_rows=SUBSTRATE_ROWS,
+        top=(rows + thickness) * size,
+        thickness=thickness * size,
+        columns=columns,
+        substrate_rows=rows,
         film_rows=FILM_ROWS,
     )
-    shift = np.random.default_rng(2).uniform(-0.1 * SIZE, 0.1 * SIZE, (2, *mesh.X.shape))
-    shift[:, [0, *range(SUBSTRATE_ROWS, SUBSTRATE_ROWS + FILM_ROWS + 1)]] = 0.0
+    shift = np.random.default_rng(2).uniform(-0.1 * size, 0.1 * size, (2, *mesh.X.shape))
+    shift[:, [0, *range(rows, rows + FILM_ROWS + 1)]] = 0.0
     shift[:, :, [0, -1]] = 0.0
     return GridMesh(mesh.X + shift[0], mesh.Y + shift[1], mesh.layer)
 
 
 def struck_bilayer(
     *,
+    mesh: GridMesh | None = None,
+    ratio: float = RATIO,
     own_steps: bool = True,
     threads: int = 1,
     precision: str = "double",
     one_point: bool = True,
     left: int = LEFT_STRUCK,
+    motion: Array = STRIKE,
     bulk_viscosity: tuple[float, float] = (0.06, 1.2),
 ) -> Model:
     """A plate strikes the upper half of a block with a film, which stands on a wall; or it is glued to it."""
-    mesh = film_on_block()
-    edges = (left, FIXED, FREE, ROLLER, True, float(mesh.X.max()), 0.1, STRIKE, AT_REST)
+    mesh = mesh or film_on_block()
+    edges = (left, FIXED, FREE, ROLLER, True, float(mesh.X.max()), 0.1, motion, AT_REST)
     boundary = Boundary(
         *edges,
         old=np.zeros((3, 4, mesh.X.shape[1])),
         bins=np.zeros((3, 2, mesh.X.shape[1]), dtype=np.int64),
     )
     soft = Viscoelastic(RHO, MU, K, np.array([20 * MU]), np.zeros(1), np.array([TAU]))
-    solids = [soft, elastic(mu=RATIO * MU, K=RATIO * K)]
+    solids = [soft, elastic(mu=ratio * MU, K=ratio * K)]
     model = assemble(
         mesh,
         solids,

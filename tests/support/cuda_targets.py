@@ -27,8 +27,8 @@ from numba.cuda.typing.typeof import typeof
 from support.backend_models import MODELS
 from support.models import build, distorted
 from wrinklewave.dynamics.backends import March
-from wrinklewave.dynamics.cuda import backend, kernels
-from wrinklewave.dynamics.model import Model
+from wrinklewave.dynamics.cuda import backend, kernels, row_kernels
+from wrinklewave.dynamics.model import Model, subcycled
 from wrinklewave.materials.moduli import Viscoelastic
 
 CAPABILITY = (9, 0)
@@ -82,8 +82,8 @@ class _Compiled:
 def compiled(model: Model) -> dict[str, Resources]:
     """What every kernel that steps and reads a model takes, by name."""
     found: dict[str, Resources] = {}
-    for name, kernel in _KERNELS.items():
-        setattr(kernels, name, _Compiled(kernel, found))
+    for (module, name), kernel in _KERNELS.items():
+        setattr(module, name, _Compiled(kernel, found))
     backend.cuda = SimpleNamespace(  # type: ignore[assignment]
         to_device=lambda values, stream=None: np.array(values).view(_Array),
         device_array=_device_array,
@@ -94,12 +94,16 @@ def compiled(model: Model) -> dict[str, Resources]:
     )
     dispatcher.get_current_device = lambda: SimpleNamespace(compute_capability=CAPABILITY)
     (member,) = backend.Batch([model]).members()
-    member.march(March(3, 0.0, 0.0, 1e-6))
+    counts = None if model.row_steps is None else np.ones(model.mesh.shape[0], dtype=np.int64)
+    member.march(March(3, 0.0, 0.0, 1e-6, counts))
     member.snapshot()()
     return found
 
 
-_KERNELS = {name: getattr(kernels, name) for name in ("steps", "sample", "snapshot", "stable_steps")}
+_KERNELS = {
+    (kernels, name): getattr(kernels, name) for name in ("steps", "sample", "snapshot", "stable_steps")
+}
+_KERNELS |= {(row_kernels, "row_steps"): row_kernels.row_steps}
 
 
 def resources(ptx: str) -> Resources:
@@ -128,9 +132,14 @@ def many_terms() -> Model:
     return build(distorted(4, 3), solid, "mean-dilatation")
 
 
+def many_terms_by_rows() -> Model:
+    """The same with steps of their own for rows of elements."""
+    return subcycled(many_terms())
+
+
 def main(file: str) -> None:
     """Compile the kernels of all models."""
-    models = (MODELS["struck"], many_terms)
+    models = (MODELS["struck"], many_terms, MODELS["filmed"], many_terms_by_rows)
     found = {f.__name__: compiled(f()) for f in models}
     Path(file).write_text(json.dumps(found, indent=1))
 

@@ -7,7 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from support.backend_models import BATCHES, EVENTS, MODELS, SHEAR
+from support.backend_models import BATCHES, EVENTS, MODELS, SHEAR, filmed
+from support.backend_runs import continued
 from support.elsewhere import environment, run_elsewhere
 from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, WORK, position
 
@@ -16,7 +17,9 @@ AGREEMENT = 1e-11
 MIXED_AGREEMENT = 2e-5
 """The same, of single precision."""
 STATE = ("u", "w", "vx", "vy", "memory", "fields", "totals")
-EXACT = ("step", "time_s")
+EXACT = ("step", "time_s", "counts")
+
+RESTARTED = ("struck", "filmed")
 
 Runs = dict[str, np.ndarray]
 
@@ -35,12 +38,15 @@ def can_compile() -> bool:
 def runs(tmp_path_factory) -> dict[str, Runs]:
     """Results of all runs, by device."""
     pytest.importorskip("numba_cuda")
-    found = {}
+    found, folder = {}, tmp_path_factory.mktemp("runs")
     for device in ("cpu", "cuda"):
-        file = tmp_path_factory.mktemp("runs") / f"{device}.npz"
+        file = folder / f"{device}.npz"
         run_elsewhere("support.backend_runs", device, device, str(file))
         with np.load(file) as data:
             found[device] = dict(data)
+    found["cpu"] |= {
+        f"continued/{key}": values for key, values in continued(filmed(), "cpu", folder / "cuda.h5").items()
+    }
     return found
 
 
@@ -49,7 +55,7 @@ def of(runs: Runs, name: str) -> Runs:
 
 
 def agreement(name: str) -> float:
-    return MIXED_AGREEMENT if name == "mixed" else AGREEMENT
+    return MIXED_AGREEMENT if name.endswith("mixed") else AGREEMENT
 
 
 @pytest.mark.parametrize("name", MODELS)
@@ -95,22 +101,45 @@ def test_kernels_compile_for_a_gpu(tmp_path):
     file = tmp_path / "kernels.json"
     subprocess.run([sys.executable, "-m", "support.cuda_targets", str(file)], env=environment(), check=True)
     found = json.loads(file.read_text())
-    kernels = {"steps", "sample", "snapshot", "stable_steps"}
-    assert {name: set(of_model) for name, of_model in found.items()} == {
-        "struck": kernels,
-        "many_terms": kernels,
+    steps = {
+        "struck": "steps",
+        "many_terms": "steps",
+        "filmed": "row_steps",
+        "many_terms_by_rows": "row_steps",
     }
+    expected = {name: {kernel, "sample", "snapshot", "stable_steps"} for name, kernel in steps.items()}
+    assert {name: set(of_model) for name, of_model in found.items()} == expected
     resources = [of_kernel for of_model in found.values() for of_kernel in of_model.values()]
     assert not any(of_kernel.get("spilled") for of_kernel in resources)
 
 
+@pytest.mark.parametrize("name", RESTARTED)
 @pytest.mark.parametrize("device", ["cpu", "cuda"])
-def test_restart_changes_no_bit(runs, device):
-    whole, restarted = of(runs[device], "struck"), of(runs[device], "restarted")
+def test_restart_changes_no_bit(runs, device, name):
+    whole, restarted = of(runs[device], name), of(runs[device], f"restarted_{name}")
     assert all(np.array_equal(whole[key], restarted[key]) for key in whole)
 
 
-@pytest.mark.parametrize("name", [model.__name__ for members in BATCHES for model in members] + ["restarted"])
+@pytest.mark.parametrize("device", ["cpu", "cuda"])
+def test_a_checkpoint_of_one_device_goes_on_on_the_other(runs, device):
+    whole, continued = of(runs[device], "filmed"), of(runs[device], "continued")
+    energy = max(whole[key].max() for key in whole if key.endswith("_J_per_m"))
+    assert whole.keys() == continued.keys()
+    for key in whole:
+        scale = energy if key.endswith("_J_per_m") else np.abs(whole[key]).max()
+        assert np.abs(continued[key] - whole[key]).max() <= AGREEMENT * scale, key
+
+
+def test_rows_have_steps_of_their_own(runs):
+    counts = {name: of(runs["cuda"], name)["counts"] for name in ("filmed", "filmed_softly", "filmed_evenly")}
+    assert counts["filmed"][-1] > counts["filmed_softly"][-1] > 1
+    assert (counts["filmed_evenly"] == 1).all()
+    assert of(runs["cuda"], "filmed_groove")["counts"][-1] > 1
+
+
+@pytest.mark.parametrize(
+    "name", [m.__name__ for members in BATCHES for m in members] + [f"restarted_{m}" for m in RESTARTED]
+)
 def test_a_batch_changes_no_bit_of_its_members(runs, name):
     alone, together = of(runs["cuda"], name), of(runs["cuda"], f"together_{name}")
     assert alone.keys() == together.keys()
@@ -127,11 +156,12 @@ def test_members_of_batches_differ_and_one_fails(runs):
 
 @pytest.mark.parametrize("device", ["cpu", "cuda"])
 def test_runs_show_what_they_are_for(runs, device):
-    struck, grooved = of(runs[device], "struck")["totals"], of(runs[device], "grooved")["totals"]
-    assert struck[FORCE] > 0
-    assert struck[WORK] > 0
-    assert struck[FRICTION_LOSS] > 0
-    assert grooved[CONTACT_LOSS] != 0  # its lips have touched
+    struck, filmed, grooved, groove = (
+        of(runs[device], name)["totals"] for name in ("struck", "filmed", "grooved", "filmed_groove")
+    )
+    for totals in (struck, filmed):
+        assert min(totals[FORCE], totals[WORK], totals[FRICTION_LOSS]) > 0
+    assert grooved[CONTACT_LOSS] * groove[CONTACT_LOSS] != 0  # their lips have touched
     sheared = of(runs[device], "sheared")
     assert sheared["w"][-1, 0] == pytest.approx(position(SHEAR, EVENTS[-1]))  # as its history says
     straight = of(runs[device], "bilayer")["w"][:, 0]

@@ -24,7 +24,7 @@ class March:
         start: time of the present positions [s].
         last_dt: the step that led to them (0 at the start) [s].
         dt: the step [s].
-        counts: how many steps each row of elements takes in one step, shape [n_rows], where they have their own.
+        counts: how many steps each row of elements takes in one step, shape [n_rows], if rows have steps of their own.
     """
 
     n: int
@@ -74,8 +74,8 @@ class Backend(Protocol):
     def march(self, wanted: March) -> Sample:
         """Take steps, and a sample of the state that they lead to."""
 
-    def least_stable_step(self) -> float:
-        """The smallest of :meth:`stable_steps` [s], NaN if any is."""
+    def stable_steps_of_rows(self) -> NDArray:
+        """The smallest of :meth:`stable_steps` in each row [s], NaN if any is, shape [n_rows]."""
 
     def stable_steps(self) -> NDArray:
         """Largest stable step of each element [s], shape [n_rows, n_columns]."""

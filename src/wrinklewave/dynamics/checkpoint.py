@@ -73,20 +73,9 @@ def read_checkpoint(path: Path, simulation: Simulation, case_text: str) -> Recor
                 cure="give the same case and --set values, or start again with --overwrite",
             )
         try:
-            _demand_equal_steps(path, file, simulation)
             return _restore(file, simulation)
         except (KeyError, OSError) as error:
             raise InputError(f"is damaged ({error})", file=path, cure=START_AGAIN) from error
-
-
-def _demand_equal_steps(path: Path, file: h5py.File, simulation: Simulation) -> None:
-    if np.any(file["sums/counts"][()] > 1) and not simulation.subcycles:
-        raise InputError(
-            "was written on the processor, where rows of elements have steps of their own",
-            file=path,
-            expected="a run on the processor",
-            cure="resume it with --device cpu, or start again with --overwrite",
-        )
 
 
 def _restore(file: h5py.File, simulation: Simulation) -> Record:

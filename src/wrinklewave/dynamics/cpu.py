@@ -134,9 +134,10 @@ class Cpu:
             self._advance(March(0, 0.0, 0.0, 1.0, counts), m.arrays, np.zeros(N_TOTALS))
         self._compiled = True
 
-    def least_stable_step(self) -> float:
-        """The smallest of them [s]."""
-        return float(self.stable_steps().min())
+    def stable_steps_of_rows(self) -> NDArray[np.float64]:
+        """The smallest of each row [s]."""
+        least: NDArray[np.float64] = self.stable_steps().min(axis=1)
+        return least
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""

@@ -127,12 +127,13 @@ def _move_row(j, below, above, a, interval, dt):
 
 
 @strict
-def _is_due(j, tick, period):
+def is_due(j, tick, period):
+    """Whether element row ``j`` takes a step at a ``tick``, a step of the fastest row."""
     return tick % period[j] == 0
 
 
 @strict
-def _interval(j, tick, dt, period, last):
+def impulse_time(j, tick, dt, period, last):
     """Time that an impulse of element row ``j`` stands for: half of its last step and half of the next."""
     step = dt * period[j]
     return 0.5 * ((last[j] if tick == 0 else step) + step)
@@ -146,6 +147,18 @@ def _update_factors(j, tick, dt, period, last, a):
     update_factors(a.terms[own:end], last[j] if tick == 0 else step, step, a.factors[own:end])
 
 
+@serial
+def update_factors_of_rows(step, n_ticks, dt, period, last, a):
+    """Prony coefficients of each row for its own ``step`` of a march: 0 is the first, 1 stands for all others.
+
+    A row that takes one step only keeps those of its first.
+    """
+    for j in range(period.size):
+        tick = step * period[j]
+        if tick < n_ticks:
+            _update_factors(j, tick, dt, period, last, a)
+
+
 @strict
 def _buffer(j, part, a):
     """Buffer of element row j of a share."""
@@ -155,13 +168,13 @@ def _buffer(j, part, a):
 @strict
 def _move_due_row(j, part, start, tick, dt, period, last, a):
     """Move the row of nodes below element row j, of which rows from ``start`` on are due."""
-    interval = _interval(j, tick, dt, period, last)
+    interval = impulse_time(j, tick, dt, period, last)
     below, before = a.nothing, interval
     if j > start:
-        below, before = a.forces[part, (j - 1) % 2], _interval(j - 1, tick, dt, period, last)
-    elif j == a.shares[part] and part > 0 and _is_due(j - 1, tick, period):
+        below, before = a.forces[part, (j - 1) % 2], impulse_time(j - 1, tick, dt, period, last)
+    elif j == a.shares[part] and part > 0 and is_due(j - 1, tick, period):
         wait_for(a.counts[KNOWN], part - 1, tick + 1)
-        below, before = a.forces[part - 1, BORDER], _interval(j - 1, tick, dt, period, last)
+        below, before = a.forces[part - 1, BORDER], impulse_time(j - 1, tick, dt, period, last)
     if before != interval:
         _scale(below, before / interval, a.forces[part, SCALED])
         below = a.forces[part, SCALED]
@@ -187,7 +200,7 @@ def _advance_share(part, start, tick, dt, period, last, a, memory, terms):
     if border >= 0:
         _move_due_row(border, part, start, tick, dt, period, last, a)
     if stop == n_rows:
-        interval = _interval(stop - 1, tick, dt, period, last)
+        interval = impulse_time(stop - 1, tick, dt, period, last)
         _move_row(n_rows, a.forces[part, (stop - 1) % 2], a.nothing, a, interval, dt * period[stop - 1])
 
 
@@ -213,7 +226,7 @@ def march(part, n_steps, t, dt, period, last, a, memory, terms, boundary, mean_v
     nodes = Nodes(a.X, a.Y, a.u, a.w, a.vx, a.vy, a.inverse_mass)
     for tick in range(n_steps * most):
         start = first
-        while start < stop and not _is_due(start, tick, period):
+        while start < stop and not is_due(start, tick, period):
             start += 1
         if start == stop:
             continue

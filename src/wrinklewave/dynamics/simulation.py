@@ -124,8 +124,8 @@ class Simulation:
 
     @property
     def subcycles(self) -> bool:
-        """Whether rows of elements have steps of their own; a GPU takes one step for all."""
-        return self.model.row_steps is not None and self.device == "cpu"
+        """Whether rows of elements have steps of their own."""
+        return self.model.row_steps is not None
 
     @property
     def imbalance(self) -> float:
@@ -172,7 +172,7 @@ class Simulation:
         Raises:
             RunError: as :meth:`run`.
         """
-        return self._checked(self.backend.least_stable_step())
+        return self._checked(float(self.backend.stable_steps_of_rows().min()))
 
     def _checked(self, dt: float) -> float:
         self.first_dt = self.first_dt or dt
@@ -210,8 +210,6 @@ class Simulation:
             self.updates += count * int(self.counts.sum()) * self.model.mesh.shape[1]
             self.stepping_seconds += sample.seconds
             self.dt = dt
-            if self.model.row_steps is not None and not self.subcycles:
-                self.model.row_steps.last[:] = dt
             self.reached = start + (done + count) * dt
             self.totals[FORCE] = 0.0
             self.totals += sample.totals
@@ -229,9 +227,8 @@ class Simulation:
 
     def _stable_steps_of_rows(self) -> NDArray[np.float64]:
         """Largest stable step of each row of elements [s], or that of all for each."""
-        if self.subcycles:
-            return self.backend.stable_steps().min(axis=1)
-        return np.full(self.model.mesh.shape[0], self.backend.least_stable_step())
+        rows = self.backend.stable_steps_of_rows()
+        return rows if self.subcycles else np.full(rows.size, rows.min())
 
     def _record(self, t: float, dt: float, sample: Sample) -> None:
         a, rows = self.model.arrays, sample.survey

@@ -12,25 +12,28 @@ from numba import config, cuda
 
 from wrinklewave.dynamics.backends import March, Sample, Snapshot
 from wrinklewave.dynamics.boundary import N_TOTALS, Boundary, Nodes, n_edge_nodes
-from wrinklewave.dynamics.cuda import kernels
+from wrinklewave.dynamics.cuda import kernels, row_kernels
 from wrinklewave.dynamics.cuda.kernels import Tall
+from wrinklewave.dynamics.cuda.row_kernels import WARP, Mean, Timetable
 from wrinklewave.dynamics.energy import KINETIC, N_COLUMNS, N_SUMS
 from wrinklewave.dynamics.fields import FIELDS
+from wrinklewave.dynamics.row_steps import MOST, seen_over, update_factors_of_rows
 from wrinklewave.dynamics.step import update_factors
 from wrinklewave.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
     from wrinklewave.dynamics.model import Model
+    from wrinklewave.dynamics.row_steps import RowSteps
+    from wrinklewave.dynamics.step import Arrays
 
 SIMULATED_THREADS = 4
 """In numba's simulator every thread is one of Python's."""
-WARP = 32
 NODAL = Nodes._fields
-BY_LAYER = ("moduli", "terms", "factors")
+BY_LAYER = ("moduli", "terms")
 MOST_MEMBERS = 64
 """Of a batch: more do not fill a device any better, and keep more results waiting."""
 CONTEXT = 0.6e9
@@ -39,14 +42,23 @@ USED_MEMORY = 0.8
 """Part of the device's free memory that batches may take."""
 FORCES, OUTPUTS = 8, 6
 """Components of the forces on an element; snapshots of a member that may wait at the same time, and one more."""
+FIRST, REST, SEEN = range(3)
+"""Prony coefficients: of the first step of a march, of those that follow, and as its survey needs them."""
 
 config.CUDA_LOW_OCCUPANCY_WARNINGS = 0  # meshes too small to fill a GPU are no mistake
 
 
 class _Resident(NamedTuple):
-    """What stays on the device: arguments of the kernels, see :mod:`wrinklewave.dynamics.cuda.kernels`."""
+    """What stays on the device: arguments of the kernels, see :mod:`wrinklewave.dynamics.cuda.kernels`.
+
+    ``first_factors`` are the Prony coefficients of the first step of a march;
+    ``seen`` is the same as ``tall``, but with the velocities and Prony coefficients that outputs are made of: where
+    rows have steps of their own, velocities are means of a large step.
+    """
 
     tall: Tall
+    first_factors: Any
+    seen: Tall
     memory: tuple[Any, ...]
     boundary: Boundary
 
@@ -83,13 +95,15 @@ class _Buffers(NamedTuple):
 def shape_of(model: Model) -> tuple[Any, ...]:
     """What models must have in common to be members of one batch."""
     a, boundary = model.arrays, model.boundary
-    return a.X.shape, a.u.dtype, model.memory.shape, a.terms.shape, boundary.old.shape, boundary.bins.shape
+    own_steps, edges = model.row_steps is not None, (boundary.old.shape, boundary.bins.shape)
+    return a.X.shape, a.u.dtype, model.memory.shape, a.terms.shape, own_steps, edges
 
 
 def memory_of(model: Model) -> int:
     """About how many bytes a member of a batch takes on the device."""
     a, outputs = model.arrays, 4 * model.mesh.X.size + len(FIELDS) * model.mesh.n_elements
-    state = (len(NODAL) + FORCES) * a.u.nbytes + model.memory.nbytes + 8 * model.mesh.n_elements
+    means = 0 if model.row_steps is None else len(Mean._fields)
+    state = (len(NODAL) + FORCES + means) * a.u.nbytes + model.memory.nbytes + 8 * model.mesh.n_elements
     return state + 8 * OUTPUTS * outputs
 
 
@@ -129,7 +143,10 @@ class Batch:
         self.slots: list[_Slot] = []  # that no snapshot holds
         self._shared = 8 * self.threads  # bytes: one number for each
         self._grid: tuple[int, int] | None = None  # of the steps; not known before the first
-        self._least: dict[int, float] = {}  # stable step of members' present states, as far as it is known
+        self._least: dict[
+            int, NDArray[np.float64]
+        ] = {}  # stable steps of rows now, of members that have marched
+        self._brought: dict[str, tuple[NDArray, Any]] = {}  # what launches were told, here and on the device
 
     def members(self) -> list[Cuda]:
         """A backend for each model."""
@@ -140,76 +157,106 @@ class Batch:
         places = sorted(wanted, key=lambda place: -wanted[place].n)
         marches = [wanted[place] for place in places]
         n = np.array([march.n for march in marches])
-        times = cuda.to_device(np.array([(m.start, m.last_dt, m.dt) for m in marches]), stream=self.stream)
-        members = cuda.to_device(np.array(places), stream=self.stream)
-        first_factors = self._bring_factors(wanted)
+        times = self._bring("times", np.array([(m.start, m.last_dt, m.dt) for m in marches]))
+        members = self._bring("members", np.array(places))
+        self._bring_factors(wanted)
         if self._grid is None:  # no step: the time of the first ones is not to be that of the compiler
-            self._step(0 * n, members, times, first_factors)
+            self._step(self._told(0 * n, places, marches), members, times)
             self.stream.synchronize()
         begin = time.perf_counter()
-        self._step(n, members, times, first_factors)
+        self._step(self._told(n, places, marches), members, times)
         sums, edges, least = self._survey(members, times)
-        seconds = (time.perf_counter() - begin) / n.sum()
-        self._least |= {place: float(smallest) for place, smallest in zip(places, least, strict=True)}
+        seconds = time.perf_counter() - begin
+        self._least |= dict(zip(places, least, strict=True))
+        for place, march in wanted.items():
+            if march.counts is not None:
+                self._row_steps(place).last[:] = march.dt / march.counts
+        work = n * [1 if march.counts is None else march.counts.sum() for march in marches]
         return {
             place: Sample(
-                seconds=seconds * march.n,
+                seconds=seconds * float(share),
                 survey=sums[k, :-1, :N_COLUMNS],
                 kinetic=float(sums[k, :, KINETIC].sum()),
                 totals=edges[k, :N_TOTALS],
                 corner=(float(edges[k, N_TOTALS]), float(edges[k, N_TOTALS + 1])),
             )
-            for k, (place, march) in enumerate(zip(places, marches, strict=True))
+            for k, (place, share) in enumerate(zip(places, work / work.sum(), strict=True))
         }
 
-    def _bring_factors(self, wanted: Mapping[int, March]) -> Any:
-        """Prony coefficients of all members but the first step's go to where the kernels look for them."""
-        first_factors = self._factors.copy()
-        for place, march in wanted.items():
-            own, arrays = self.layers(place), self._models[place].arrays
-            terms, factors = arrays.terms, arrays.factors
-            update_factors(terms, march.last_dt, march.dt, factors)
-            first_factors[own] = factors
-            if march.n > 1:
-                update_factors(terms, march.dt, march.dt, factors)
-            self._factors[own] = factors
-        self.resident.tall.factors.copy_to_device(self._factors, stream=self.stream)
-        return cuda.to_device(first_factors, stream=self.stream)
+    def _told(self, n: NDArray[np.int64], places: Sequence[int], marches: Sequence[March]) -> tuple[Any, ...]:
+        """What tells the kernel to take ``n`` steps with each of some members."""
+        if not self._own_steps:
+            return (self._bring("n", n),)
+        counts = np.array([march.counts for march in marches])
+        most = counts[:, -1]
+        rows, due = listed(most[:, None] // counts)
+        table = Timetable(
+            listed=rows,
+            due=due,
+            period=most[:, None] // counts,
+            ticks=n * most,
+            dt=np.array([march.dt for march in marches]) / most,
+            last=np.array([self._row_steps(place).last for place in places]),
+        )
+        return int(table.ticks.max()), Timetable(*map(self._bring, Timetable._fields, table))
 
-    def _step(self, n: NDArray[np.int64], *launch: Any) -> None:
+    def _bring(self, name: str, values: NDArray) -> Any:
+        """Numbers on the device, in the place of the last of this name; nothing is copied if those were the same."""
+        before, there = self._brought.get(name, (np.empty(0), None))
+        if there is None or before.shape != values.shape:
+            there = cuda.to_device(values, stream=self.stream)
+        elif not np.array_equal(before, values):
+            there.copy_to_device(values, stream=self.stream)
+        self._brought[name] = values, there
+        return there
+
+    def _row_steps(self, place: int) -> RowSteps:
+        steps = self._models[place].row_steps
+        assert steps is not None
+        return steps
+
+    def _bring_factors(self, wanted: Mapping[int, March]) -> None:
+        """Prony coefficients of all members go to where the kernels look for them."""
+        for place, march in wanted.items():
+            own, model = self.layers(place), self._models[place]
+            for which, factors in enumerate(_factors(march, model)):
+                self._factors[which, own] = factors
+        self._factors_on_device.copy_to_device(self._factors, stream=self.stream)
+
+    def _step(self, steps: tuple[Any, ...], members: Any, times: Any) -> None:
         d = self.resident
-        arguments = (cuda.to_device(n, stream=self.stream), *launch, d.tall, d.memory, self._models[0].terms)
+        arguments = (*steps, members, times, d.first_factors, d.tall, d.memory, self._models[0].terms)
         arguments = (*arguments, self._nodes, d.boundary, self._buffers.totals)
-        self._grid = self._grid or self._cooperating(arguments)
-        kernels.steps[(*self._grid, self.stream)](*arguments)
+        if self._own_steps:
+            arguments = (*arguments, Mean(d.seen.vx, d.seen.vy))
+        kernel = row_kernels.row_steps if self._own_steps else kernels.steps
+        self._grid = self._grid or self._cooperating(kernel, arguments)
+        kernel[(*self._grid, self.stream)](*arguments)
 
     def _survey(self, members: Any, times: Any) -> tuple[NDArray, NDArray, NDArray]:
-        """Of the members of a launch: sums by rows, what the edges have gathered, and the smallest stable step."""
+        """Of the members of a launch: sums by rows, what the edges have gathered, and the stable steps of rows."""
         d, b, count, height = self.resident, self._buffers, members.size, self._height
         launch = kernels.sample[count * height, self.threads, self.stream, self._shared]
-        terms, sums, edges = self._models[0].terms, b.sums[:count], b.edges[:count]
-        launch(members, times, d.tall, d.memory, terms, b.totals, sums, edges)
-        self._estimate_steps(members)
-        found = (values[:count].copy_to_host(stream=self.stream) for values in (sums, edges, b.least))
-        sums, edges, least = found
+        sums, edges, least = b.sums[:count], b.edges[:count], b.least[:count]
+        launch(members, times, d.seen, d.memory, self._models[0].terms, b.totals, sums, edges)
+        self._estimate_steps(members, least)
+        found = tuple(values.copy_to_host(stream=self.stream) for values in (sums, edges, least))
         self.stream.synchronize()
-        return sums, edges, least.min(axis=1)
+        return found
 
-    def _estimate_steps(self, members: Any) -> None:
-        b, count = self._buffers, members.size
-        blocks = count * (self._height - 1)
-        launch = kernels.stable_steps[blocks, self.threads, self.stream, self._shared]
-        launch(len(self._models), members, self.resident.tall, b.steps, b.least[:count])
+    def _estimate_steps(self, members: Any, least: Any) -> None:
+        launch = kernels.stable_steps[least.size, self.threads, self.stream, self._shared]
+        launch(len(self._models), members, self.resident.tall, self._buffers.steps, least)
 
     def stable_steps(self, place: int) -> NDArray[np.float64]:
         """Largest stable step of each element of a member [s], shape [n_rows, n_columns]."""
-        self._estimate_steps(cuda.to_device(np.array([place]), stream=self.stream))
+        self._estimate_steps(cuda.to_device(np.array([place]), stream=self.stream), self._buffers.least[:1])
         return self._buffers.steps[self.rows(place)].copy_to_host(stream=self.stream)
 
-    def least_stable_step(self, place: int) -> float:
-        """The smallest of them [s]; the last march has brought it with it."""
+    def stable_steps_of_rows(self, place: int) -> NDArray[np.float64]:
+        """The smallest of each row [s], shape [n_rows]; the last march has brought them with it."""
         if place not in self._least:
-            self._least[place] = float(self.stable_steps(place).min())
+            self._least[place] = self.stable_steps(place).min(axis=1)
         return self._least[place]
 
     def rows(self, place: int) -> slice:
@@ -228,10 +275,14 @@ class Batch:
         tall = {name: np.concatenate([getattr(a, name) for a in arrays]) for name in (*NODAL, *BY_LAYER)}
         tall["density"] = np.concatenate([model.density for model in self._models])
         tall["forces"] = np.zeros((len(tall["u"]), 8, tall["u"].shape[1] + 1), tall["u"].dtype)
-        tall["layer"] = self._tall(model.mesh.layer.astype(np.uint8) for model in self._models)
+        tall["layer"] = self._tall(map(layers_of_elements, arrays))
         components = zip(*(model.memory for model in self._models), strict=True)
+        present = {name: cuda.to_device(values) for name, values in tall.items()}
+        whole = Tall(**present, factors=self._factors_on_device[REST])
         return _Resident(
-            tall=Tall(**{name: cuda.to_device(values) for name, values in tall.items()}),
+            tall=whole,
+            first_factors=self._factors_on_device[FIRST],
+            seen=whole._replace(**self._means(), factors=self._factors_on_device[SEEN]),
             memory=tuple(cuda.to_device(self._tall(component)) for component in components),
             boundary=_stacked([model.boundary for model in self._models]),
         )
@@ -241,10 +292,25 @@ class Batch:
         """Fields of elements on top of each other, with a row of no elements above each."""
         return np.concatenate([np.pad(values, ((0, 1), (0, 0))) for values in of_members])
 
+    @property
+    def _own_steps(self) -> bool:
+        """Whether rows of elements have steps of their own: in all members or in none."""
+        return self._models[0].row_steps is not None
+
+    def _means(self) -> dict[str, Any]:
+        """Mean velocities of a large step, where rows have steps of their own."""
+        steps = [model.row_steps for model in self._models if model.row_steps is not None]
+        names = Mean._fields if steps else ()
+        return {name: cuda.to_device(np.concatenate([getattr(s, name) for s in steps])) for name in names}
+
     @cached_property
     def _factors(self) -> NDArray[np.float64]:
-        """Prony coefficients as they are on the device."""
-        return np.concatenate([model.arrays.factors for model in self._models])
+        """Prony coefficients as they are on the device: three kinds, by layer."""
+        return np.array([np.concatenate([model.arrays.factors for model in self._models])] * 3)
+
+    @cached_property
+    def _factors_on_device(self) -> Any:
+        return cuda.to_device(self._factors)
 
     @cached_property
     def stream(self) -> Any:
@@ -277,17 +343,52 @@ class Batch:
             least=cuda.device_array((count, height - 1)),
         )
 
-    def _cooperating(self, arguments: tuple[Any, ...]) -> tuple[int, int]:
+    def _cooperating(self, kernel: Any, arguments: tuple[Any, ...]) -> tuple[int, int]:
         """Blocks and threads per block that can be on the device together, so that they may wait for each other.
 
         A multiprocessor has one block, of as many threads as registers allow; fewer do if nodes are few.
         """
         if config.ENABLE_CUDASIM:
             return 1, SIMULATED_THREADS
-        kernel, nodes = kernels.steps, len(self._models) * self._models[0].mesh.X.size
+        nodes = len(self._models) * self._models[0].mesh.X.size
         compiled = kernel.compile(tuple(kernel.typeof_pyval(argument) for argument in arguments))
         threads = compiled.max_threads_per_block // WARP * WARP
         return min(-(-nodes // threads), compiled.max_cooperative_grid_blocks(threads)), threads
+
+
+def layers_of_elements(a: Arrays) -> NDArray[np.int32]:
+    """Layer of each element, which may be one of its row alone, shape [n_rows, n_columns]."""
+    start, stop, layer = a.runs.T
+    return np.repeat(layer, stop - start).reshape(a.first_run.size - 1, -1).astype(np.int32)
+
+
+def listed(period: NDArray[np.int64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """``listed`` and ``due`` of a :class:`~wrinklewave.dynamics.cuda.row_kernels.Timetable`, from its ``period``.
+
+    Periods are powers of two, so all that are due at a tick are shorter than all that are not.
+    """
+    order = np.argsort(period, axis=None, kind="stable")
+    rows = np.column_stack(np.unravel_index(order, period.shape))
+    return rows, np.array([(tick % period == 0).sum() for tick in range(MOST)])
+
+
+def _factors(march: March, model: Model) -> Iterator[NDArray[np.float64]]:
+    """Prony coefficients of a member: of the first step of a march, of the rest, and as its survey needs them."""
+    a, steps = model.arrays, model.row_steps
+    if steps is None or march.counts is None:
+        update_factors(a.terms, march.last_dt, march.dt, a.factors)
+        yield a.factors
+        if march.n > 1:
+            update_factors(a.terms, march.dt, march.dt, a.factors)
+        yield a.factors
+        yield a.factors
+        return
+    most = int(march.counts[-1])
+    numbers = (march.n * most, march.dt / most, most // march.counts, steps.last, a)
+    for step in range(2):
+        update_factors_of_rows(step, *numbers)
+        yield a.factors
+    yield seen_over(march.dt, a).factors
 
 
 def _stacked(boundaries: Sequence[Boundary]) -> Boundary:
@@ -324,9 +425,9 @@ class Cuda:
         """March alone."""
         return self._batch.march({self._place: wanted})[self._place]
 
-    def least_stable_step(self) -> float:
-        """The smallest of them [s]."""
-        return self._batch.least_stable_step(self._place)
+    def stable_steps_of_rows(self) -> NDArray[np.float64]:
+        """The smallest of each row [s]."""
+        return self._batch.stable_steps_of_rows(self._place)
 
     def stable_steps(self) -> NDArray[np.float64]:
         """Largest stable step of each element [s]."""
@@ -339,7 +440,7 @@ class Cuda:
         blocks = -(-model.mesh.X.size // batch.threads)
         launch = kernels.snapshot[blocks, batch.threads, batch.stream]
         own = self._own
-        launch(own.tall, own.memory, model.terms, slot.nodal, slot.elements)
+        launch(own.seen, own.memory, model.terms, slot.nodal, slot.elements)
         ready, copied = cuda.event(), cuda.event()
         ready.record(batch.stream)
         ready.wait(batch.copies)
@@ -361,6 +462,8 @@ class Cuda:
         own, model, stream = self._own, self._model, self._batch.stream
         for name in ("u", "w", "vx", "vy"):
             getattr(own.tall, name).copy_to_host(getattr(model.arrays, name), stream=stream)
+        for name in Mean._fields if model.row_steps is not None else ():
+            getattr(own.seen, name).copy_to_host(getattr(model.row_steps, name), stream=stream)
         for component, kept in zip(own.memory, model.memory, strict=True):
             component.copy_to_host(kept, stream=stream)
         stream.synchronize()
@@ -370,7 +473,10 @@ class Cuda:
         """Its part of what stays on the device."""
         d, elements = self._batch.resident, self._batch.rows(self._place)
         nodes, layers = slice(elements.start, elements.stop + 1), self._batch.layers(self._place)
-        parts = dict.fromkeys(NODAL, nodes) | dict.fromkeys((*BY_LAYER, "density"), layers)
+        parts = dict.fromkeys(NODAL, nodes) | dict.fromkeys((*BY_LAYER, "factors", "density"), layers)
         parts |= {"forces": nodes, "layer": elements}
-        tall = Tall(**{name: getattr(d.tall, name)[part] for name, part in parts.items()})
-        return d._replace(tall=tall, memory=tuple(component[elements] for component in d.memory))
+        tall, seen = (
+            Tall(**{name: getattr(whole, name)[part] for name, part in parts.items()})
+            for whole in (d.tall, d.seen)
+        )
+        return d._replace(tall=tall, seen=seen, memory=tuple(component[elements] for component in d.memory))

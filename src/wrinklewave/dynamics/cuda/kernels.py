@@ -5,8 +5,9 @@ node rows from ``b * height`` on, and the row of elements above its top nodes, w
 none. Their forces stay zero: they are what lies below and above a mesh. Every layer of every member is a material of
 its own. So what works on rows of elements or nodes needs to know of no batch.
 
-``members`` are the places of those that take part in a launch, in the order of what the launch brings back. All that
-names ``cuda`` is in this one module, as numba's simulator demands.
+``members`` are the places of those that take part in a launch, in the order of what the launch brings back. What a
+kernel calls and names ``cuda`` is in the module of the kernel, as numba's simulator demands. Models whose rows have
+steps of their own have a kernel of their own, in :mod:`wrinklewave.dynamics.cuda.row_kernels`.
 """
 
 from __future__ import annotations
@@ -57,8 +58,9 @@ START, LAST_DT, DT = range(3)
 class Tall(NamedTuple):
     """Arrays of the tall mesh, by the names of the processor's :class:`~wrinklewave.dynamics.step.Arrays`.
 
-    ``forces`` [n_tall_rows, 8, n_columns + 2] have a buffer for every row of elements, ``layer``
-    [n_tall_rows, n_columns] is counted within a member, ``density`` [n_batch * n_layers] is that of each material.
+    ``forces`` [n_tall_rows, 8, n_columns + 2] have a buffer for every row of elements; ``layer``
+    [n_tall_rows, n_columns] is counted within a member, whose rows may have layers of their own; ``density``
+    [n_batch * n_layers] is that of each material.
     """
 
     X: Any
@@ -76,7 +78,7 @@ class Tall(NamedTuple):
     layer: Any
 
 
-def _kernel(function: Callable[..., Any]) -> Any:
+def kernel(function: Callable[..., Any]) -> Any:
     """Compile when first launched, and keep it on disk."""
     choose_cache(function)
     return cuda.jit(cache=True)(function)
@@ -121,14 +123,14 @@ def _inner_nodes(step, active, members, height, times, a):
 
 
 @cuda.jit(device=True)
-def _nodes_of(b, nodes):
+def nodes_of(b, nodes):
     """Nodes of one member."""
     X, Y, inverse_mass = nodes.X[b], nodes.Y[b], nodes.inverse_mass[b]
     return Nodes(X, Y, nodes.u[b], nodes.w[b], nodes.vx[b], nodes.vy[b], inverse_mass)
 
 
 @cuda.jit(device=True)
-def _boundary_of(b, of_all):
+def boundary_of(b, of_all):
     """Edge conditions of one member."""
     return Boundary(
         of_all.left[b],
@@ -149,7 +151,7 @@ def _boundary_of(b, of_all):
 @cuda.jit(device=True)
 def _move_edges(b, dt_velocity, dt, a, nodes, boundary):
     """Remember and move the edge nodes of a member, by one block."""
-    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
+    own, edges = nodes_of(b, nodes), boundary_of(b, boundary)
     rows, columns = own.u.shape
     for n in range(cuda.threadIdx.x, n_edge_nodes(rows, columns), cuda.blockDim.x):
         j, i = edge_node(n, rows, columns)[2:]
@@ -158,33 +160,38 @@ def _move_edges(b, dt_velocity, dt, a, nodes, boundary):
 
 
 @cuda.jit(device=True)
-def _overhangs(nodes, row):
-    """Whether this thread sees a surface that folds; only then can it touch itself."""
-    for i in range(cuda.threadIdx.x, nodes.u.shape[1] - 1, cuda.blockDim.x):
+def _overhangs(nodes, row, thread, threads):
+    for i in range(thread, nodes.u.shape[1] - 1, threads):
         if nodes.X[row, i + 1] + nodes.u[row, i + 1] < nodes.X[row, i] + nodes.u[row, i]:
             return 1
     return 0
 
 
 @cuda.jit(device=True)
+def folds(nodes, boundary, thread, threads):
+    """How many free surfaces this thread sees fold; only then can they touch themselves."""
+    count = 0
+    if boundary.top == FREE:
+        count += _overhangs(nodes, nodes.u.shape[0] - 1, thread, threads)
+    if boundary.bottom == FREE:
+        count += _overhangs(nodes, 0, thread, threads)
+    return count
+
+
+@cuda.jit(device=True)
 def _hold_apart(b, dt, nodes, boundary, totals):
     """Contact of a member's free surfaces with themselves, by one thread of its block if there is any."""
-    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
-    last = own.u.shape[0] - 1
-    folded = 0
-    if edges.top == FREE:
-        folded += _overhangs(own, last)
-    if edges.bottom == FREE:
-        folded += _overhangs(own, 0)
+    own, edges = nodes_of(b, nodes), boundary_of(b, boundary)
+    folded = folds(own, edges, cuda.threadIdx.x, cuda.blockDim.x)
     if cuda.syncthreads_or(folded) and cuda.threadIdx.x == 0:
         for edge in range(BOTTOM, TOP + 1):
-            hold_apart(edge, dt, own, edges, totals[b, 0 if edge == BOTTOM else last])
+            hold_apart(edge, dt, own, edges, totals[b, 0 if edge == BOTTOM else own.u.shape[0] - 1])
 
 
 @cuda.jit(device=True)
 def _hold(b, t, dt, nodes, boundary, totals):
     """Conditions at the edges of a member at time ``t``, by one block."""
-    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
+    own, edges = nodes_of(b, nodes), boundary_of(b, boundary)
     drive = drive_position(t, dt, edges)
     for n in range(cuda.threadIdx.x, totals.shape[1], cuda.blockDim.x):
         totals[b, n, FORCE] = 0.0
@@ -193,7 +200,7 @@ def _hold(b, t, dt, nodes, boundary, totals):
 
 @cuda.jit(device=True)
 def _keep_straight(b, dt, nodes, boundary):
-    own, edges = _nodes_of(b, nodes), _boundary_of(b, boundary)
+    own, edges = nodes_of(b, nodes), boundary_of(b, boundary)
     rate = straight_rate(own)
     cuda.syncthreads()
     for j in range(cuda.threadIdx.x, own.u.shape[0], cuda.blockDim.x):
@@ -220,7 +227,16 @@ def _edges(step, active, members, times, a, nodes, boundary, totals):
             _keep_straight(b, dt, nodes, boundary)
 
 
-@_kernel
+@cuda.jit(device=True)
+def clear(members, totals, thread, threads):
+    """What the edges of the members of a launch have gathered is nothing before its first step."""
+    n_edge = totals.shape[1]
+    for q in range(thread, members.shape[0] * n_edge, threads):
+        for total in range(N_TOTALS):
+            totals[members[q // n_edge], q % n_edge, total] = 0.0
+
+
+@kernel
 def steps(n, members, times, first_factors, a, memory, terms, nodes, boundary, totals):
     """Take ``n[k]`` steps with each member, those with the most coming first; ``times`` are [n_members, 3].
 
@@ -230,9 +246,7 @@ def steps(n, members, times, first_factors, a, memory, terms, nodes, boundary, t
     """
     grid = cuda.cg.this_grid()
     height, active = nodes.u.shape[1], members.shape[0]
-    for q in range(cuda.grid(1), active * totals.shape[1], cuda.gridsize(1)):
-        for total in range(N_TOTALS):
-            totals[members[q // totals.shape[1]], q % totals.shape[1], total] = 0.0
+    clear(members, totals, cuda.grid(1), cuda.gridsize(1))
     for step in range(n[0]):
         while n[active - 1] <= step:
             active -= 1
@@ -285,7 +299,7 @@ def _sum_up_row(j, first_layer, dt, a, memory, terms, shared, sums):
         sums[column] = _total(column, value, shared)
 
 
-@_kernel
+@kernel
 def sample(members, times, a, memory, terms, totals, sums, edges):
     """The present state in numbers: ``sums`` [n_members, height, N_SUMS] by rows, and of the ``edges``
     [n_members, N_TOTALS + 2] what they have gathered, and the displacement of the struck end's top corner.
@@ -314,7 +328,7 @@ def sample(members, times, a, memory, terms, totals, sums, edges):
         edges[k, N_TOTALS], edges[k, N_TOTALS + 1] = a.u[j, 0], a.w[j, 0]
 
 
-@_kernel
+@kernel
 def stable_steps(n_batch, members, a, out, least):
     """Largest stable step of each element [s], ``out`` [n_tall_rows, n_columns], and the ``least`` of each row
     [n_members, height - 1].
@@ -334,7 +348,7 @@ def stable_steps(n_batch, members, a, out, least):
         least[k, r] = _total(J_LEAST, value, shared)
 
 
-@_kernel
+@kernel
 def snapshot(a, memory, terms, nodal, elements):
     """The present state of one member, whose rows alone all arguments have: ``nodal`` [4, ...] u, w, vx, vy, and the
     fields, ``elements`` [len(FIELDS), ...].
