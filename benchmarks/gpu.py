@@ -5,7 +5,8 @@ six. In order, each result written as soon as it is there, so that a run that is
 
 1. the paper's case, its first 1,000 steps on both devices, to 1e-10;
 2. element updates per second by mesh size, and what fraction of the copy bandwidth they move;
-3. stepping time of the resolved case, to its end;
+3. stepping time of the resolved case, to its end, with steps of their own for rows of elements and with one step for
+   all, and how many element updates the first way saves; of one run and of a batch;
 4. the same of the paper's case, K_0 and K_i, and runs per minute in batches of 1 to 256, each struck at its own speed;
 5. the backends' test body: every small model of the tests on both devices, to 1e-10;
 6. output: the same with 500 snapshots copied to the host, of one run and of a batch;
@@ -37,7 +38,7 @@ from wrinklewave.dynamics.asking import answered_together
 from wrinklewave.dynamics.backends import Device, March
 from wrinklewave.dynamics.cuda import kernels
 from wrinklewave.dynamics.cuda.backend import USED_MEMORY, Batch, memory_of
-from wrinklewave.dynamics.model import Model
+from wrinklewave.dynamics.model import Model, subcycled
 from wrinklewave.dynamics.simulation import Simulation
 
 
@@ -47,18 +48,21 @@ class Extent:
 
     Args:
         paper: columns and rows of the paper's mesh.
+        resolved: the same of the resolved case's, of its substrate.
         sizes: numbers of elements, for the throughput.
         large: those that are tried with fewer registers.
         compared_steps: of the paper's case, on both devices.
         steps: of a march, for the throughput.
         end_time: of whole runs [s].
         outputs: of a run with output.
-        batches: numbers of members.
+        batches: numbers of members, of the paper's case.
+        resolved_batches: the same of the resolved case.
         models: of the tests, at most.
         seconds: that a measurement of one mesh, and at most one of a batch, takes.
     """
 
     paper: tuple[int, int] = (202, 74)
+    resolved: tuple[int, int] = (720, 51)
     sizes: tuple[float, ...] = (1e4, 1e5, 1e6, 4e6, 1e7)
     large: float = 4e6
     compared_steps: int = 1000
@@ -66,11 +70,12 @@ class Extent:
     end_time: float = parts.END_TIME
     outputs: int = 500
     batches: tuple[int, ...] = (1, 4, 16, 64, 256)
+    resolved_batches: tuple[int, ...] = (1, 8)
     models: int = 100
     seconds: tuple[float, float] = (1.0, 20.0)
 
 
-SIMULATED = Extent((4, 2), (8, 18), 18, 8, 2, 2e-5, 2, (1, 2), 1, (0.0, 20.0))
+SIMULATED = Extent((4, 2), (3, 8), (8, 18), 18, 8, 2, 2e-5, 2, (1, 2), (1,), 1, (0.0, 20.0))
 EXTENT = SIMULATED if config.ENABLE_CUDASIM else Extent()
 LIMIT = 360.0
 """Seconds after which no check is begun."""
@@ -207,14 +212,15 @@ def whole_runs(models: Sequence[Model], outputs: int = 0) -> Result:
     failures = [str(end) for _, end in answered_together(running, batch.march) if end is not None]
     seconds = time.perf_counter() - begin
     done = float(np.mean([s.time for s in simulations])) / EXTENT.end_time
-    steps = sum(s.step for s in simulations)
+    updates = sum(s.updates for s in simulations)
     return {
         "runs": len(models),
-        "steps": steps,
+        "steps": sum(s.step for s in simulations),
+        "updates": updates,
         "done": done,
         "stepping_s": sum(s.stepping_seconds for s in simulations),
         "wall_s": seconds,
-        "updates_per_s_of_wall": steps * models[0].mesh.n_elements / seconds,
+        "updates_per_s_of_wall": updates / seconds,
         "runs_per_minute": 60 * done * len(models) / seconds,
         "imbalance": max(s.imbalance for s in simulations),
         "failures": failures,
@@ -244,9 +250,17 @@ def with_fewer_registers() -> Result:
         kernels.steps = usual
 
 
-def resolved() -> Model:
-    """The resolved case; in the simulator a coarse one stands in for it."""
-    return parts.paper(*EXTENT.paper) if config.ENABLE_CUDASIM else parts.resolved()
+def resolved(n: int) -> Result:
+    """Runs of the resolved case with steps of their own for rows of elements, and with one step for all."""
+    models = [parts.resolved(*EXTENT.resolved) for _ in range(2 * n)]
+    own, equal = whole_runs([subcycled(model) for model in models[:n]]), whole_runs(models[n:])
+    fewer = equal["updates"] / equal["done"] * own["done"] / own["updates"]
+    return {
+        "own_steps": own,
+        "one_step_for_all": equal,
+        "times_fewer_updates": fewer,
+        "updates_saved": 1 - 1 / fewer,
+    }
 
 
 def checks() -> Iterator[tuple[str, Callable[[], Result]]]:
@@ -254,7 +268,8 @@ def checks() -> Iterator[tuple[str, Callable[[], Result]]]:
     yield "paper_case_against_cpu", paper_case
     for size in EXTENT.sizes:
         yield f"throughput_{size:.0e}", lambda size=size: throughput(size)
-    yield "resolved", lambda: whole_runs([resolved()])
+    for n in EXTENT.resolved_batches:
+        yield f"resolved_{n}", lambda n=n: resolved(n)
     for n in EXTENT.batches:
         for name, K in (("K_0", parts.K_0), ("K_i", parts.K_I)):
             yield f"batch_{n}_{name}", lambda n=n, K=K: batch_of(n, K)

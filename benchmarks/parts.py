@@ -46,11 +46,11 @@ def paper(columns: int = 202, rows: int = 74, *, K: float = K_0, threads: int = 
     return struck(mesh, [substrate(K)], threads)
 
 
-def resolved(threads: int = 1) -> Model:
-    """``examples/paper_resolved.toml`` with a flat film."""
+def resolved(columns: int = 720, rows: int = 51, *, threads: int = 1) -> Model:
+    """``examples/paper_resolved.toml`` with a flat film, on any mesh of its substrate."""
     mesh = bilayer(
-        **{"length": LENGTH, "bottom": 0.0, "top": HALF, "thickness": THICKNESS, "columns": 720},
-        **{"substrate_rows": 51, "film_rows": 4, "grading": (1.0, 0.065)},
+        **{"length": LENGTH, "bottom": 0.0, "top": HALF, "thickness": THICKNESS, "columns": columns},
+        **{"substrate_rows": rows, "film_rows": 4, "grading": (1.0, 0.065)},
     )
     none = np.empty(0)
     film = Viscoelastic(RHO, FILM_MU, bulk_modulus(FILM_MU, NU), none, none, none)

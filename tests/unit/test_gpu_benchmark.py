@@ -32,6 +32,9 @@ def test_every_check_runs(tmp_path):
     assert not [name for name, result in checks.items() if "failed" in result or "skipped" in result]
     assert checks["paper_case_against_cpu"]["passed"]
     assert checks["test_body"]["passed"]
+    resolved = checks["resolved_1"]
+    assert resolved["times_fewer_updates"] > 1.5
+    assert all(resolved[way]["done"] == 1.0 for way in ("own_steps", "one_step_for_all"))
     batches = [result for name, result in checks.items() if name.startswith("batch_")]
     assert [result["runs"] for result in batches] == [1, 1, 2, 2]
     assert all(result["done"] == 1.0 and result["runs_per_minute"] > 0 for result in batches)
