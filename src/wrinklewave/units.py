@@ -147,7 +147,8 @@ def _factor_by_pint(unit: str, dimension: Dimension) -> str:
 
 
 def _wrong_dimension(unit: str, found: str, dimension: Dimension) -> UnitError:
-    return UnitError(f'"{unit}" is a unit of {found}, not of {dimension.name}', _use(dimension))
+    what = "no unit" if found == unit else f"a unit of {found}, not"
+    return UnitError(f'"{unit}" is {what} of {dimension.name}', _use(dimension))
 
 
 def _use(dimension: Dimension) -> str:

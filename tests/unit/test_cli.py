@@ -8,6 +8,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -141,7 +142,21 @@ def test_full_disk_is_a_failure_not_a_mistake(
     app.command("fail")(fail)
     monkeypatch.setattr("wrinklewave.cli.application", lambda: app)
     code, _, err = run(capsys, monkeypatch, "fail")
-    assert (code, err) == (1, "wrinklewave: surface.nc: no space left on device\n")
+    assert code == 1
+    assert err.startswith("wrinklewave: surface.nc: no space left on device\n  to mend:  free some")
+
+
+def test_too_little_memory_is_told(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail() -> None:
+        raise MemoryError("Unable to allocate 75 GiB")
+
+    app = application()
+    app.command("fail")(fail)
+    monkeypatch.setattr("wrinklewave.cli.application", lambda: app)
+    code, _, err = run(capsys, monkeypatch, "fail")
+    assert (code, "75 GiB" in err, "a coarser mesh" in err) == (1, True, True)
 
 
 @pytest.mark.parametrize(
@@ -196,6 +211,26 @@ def test_ctrl_c_is_told(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.
     monkeypatch.setattr("wrinklewave.environment.versions", interrupted)
     code, _, err = run(capsys, monkeypatch, "doctor")
     assert (code, err.strip()) == (130, "wrinklewave: stopped")
+
+
+def test_what_takes_long_to_begin_says_why(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from wrinklewave.cli import progress
+
+    class Half:
+        share = 0.5
+
+        def __str__(self) -> str:
+            return "half done"
+
+    monkeypatch.setattr(progress, "PATIENCE", 0.05)
+    with progress.shown_progress("slow", "compiling"):
+        time.sleep(0.3)
+    with progress.shown_progress("quick", "compiling") as show:
+        show(Half())
+        time.sleep(0.3)
+    assert capsys.readouterr().err == "slow: compiling\nquick: half done\n"
 
 
 def test_doctor(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:

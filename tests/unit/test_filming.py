@@ -95,10 +95,33 @@ def test_command(run: Path, tmp_path: Path) -> None:
     ("options", "key"),
     [(["--exposure", "5"], "--exposure"), (["--wire", "12 kg"], "--wire"), (["--blur", "0.1"], "blur"),
      (["--wire", "90 mm"], "wires"), (["--exposure", "1 ms"], "exposure"), (["--scale", "9000"], "shape"),
-     (["--frames", "7"], "--frames"), (["--contrast-to-noise", "0"], "contrast_to_noise")],
+     (["--frames", "7"], "--frames"), (["--contrast-to-noise", "0"], "contrast_to_noise"),
+     (["--frame-rate", "10 Hz"], "--frame-rate"), (["--frame-rate", "0 Hz"], "frame_rate"),
+     (["--bit-depth", "0"], "bit_depth"), (["--bit-depth", "-1"], "bit_depth"), (["--seed", "-4"], "seed"),
+     (["--scale", "nan"], "scale"), (["--blur", "nan"], "blur"), (["--tilt", "95"], "tilt")],
 )  # fmt: skip
 def test_mistakes(run: Path, tmp_path: Path, options: list[str], key: str) -> None:
     result = CliRunner().invoke(application(), ["film", str(run), "--out", str(tmp_path / "v.tif"), *options])
     assert isinstance(result.exception, InputError)
     assert result.exception.key == key
     assert list(tmp_path.iterdir()) == []
+
+
+def test_mistakes_are_told_in_the_units_that_they_were_made_in(run: Path, tmp_path: Path) -> None:
+    for camera, words in (
+        ({"tilt": 1.0}, "57.2958 degrees"),
+        ({"exposure": 1e-3}, "1.000 ms\n  expected: from 0 to the time between frames, 20.00 us"),
+        ({"scale": -3e3}, "-3 pixels per mm"),
+    ):
+        with pytest.raises(InputError, match=words):
+            film_run(run, tmp_path / "v.tif", **camera)
+
+
+def test_no_recording_is_lost(run: Path, tmp_path: Path) -> None:
+    (tmp_path / "v.experiment.toml").write_text("completed by hand")
+    with pytest.raises(InputError, match=r"v\.experiment\.toml: is there already"):
+        film_run(run, tmp_path / "v.tif", scale=2e3)
+    assert [file.name for file in tmp_path.iterdir()] == ["v.experiment.toml"]
+    assert film_run(run, tmp_path / "v.tif", scale=2e3, overwrite=True).video.exists()
+    with pytest.raises(InputError, match=r"v\.tif: is there already"):
+        film_run(run, tmp_path / "v.tif", scale=2e3)

@@ -189,6 +189,47 @@ def test_checkpoint_of_another_case_is_refused(case, tmp_path):
     simulate(case, out=tmp_path, progress=interrupt)
     with pytest.raises(InputError, match="another case"):
         simulate(case, out=tmp_path, resume=True, overrides=["drive.velocity=9 m/s"])
+    assert simulate(case, out=tmp_path, resume=True).outcome is Outcome.FINISHED  # it can still go on
+
+
+def test_a_finished_run_of_another_case_is_not_resumed_over(case, run):
+    before = results(run.folder)
+    with pytest.raises(InputError, match=r"another case, with another drive\.velocity\n"):
+        simulate(case, out=run.folder, resume=True, overrides=["drive.velocity=9 m/s"])
+    assert results(run.folder) == before
+    assert load_case(run.folder / "case.toml") == case
+
+
+def test_a_finished_run_is_not_run_again(case, tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from wrinklewave.cli import application
+
+    file, folder = tmp_path / "case.toml", tmp_path / "[run]"
+    file.write_text(case.to_toml())
+    first = CliRunner().invoke(application(), ["simulate", str(file), "--out", str(folder)])
+    assert f"for figures and report; look at {folder}/report.html" in first.output
+    monkeypatch.setattr(cpu, "advance", None)  # it would fail
+    for command in (["restart", str(folder)], ["simulate", str(file), "--resume", "--out", str(folder)]):
+        again = CliRunner().invoke(application(), command)
+        assert (again.exit_code, again.output) == (0, f"finished already; look at {folder}/report.html\n")
+
+
+def test_an_interrupt_while_results_are_written_says_how_to_go_on(case, tmp_path, monkeypatch):
+    from typer.testing import CliRunner
+
+    from wrinklewave.cli import application
+    from wrinklewave.experiments import simulate as procedure
+
+    def interrupted(*arguments):
+        raise KeyboardInterrupt
+
+    file, folder = tmp_path / "case.toml", tmp_path / "a run"
+    file.write_text(case.to_toml())
+    monkeypatch.setattr(procedure, "analyse", interrupted)
+    stopped = CliRunner().invoke(application(), ["simulate", str(file), "--out", str(folder)])
+    assert stopped.exit_code == 130
+    assert f"go on with:  wrinklewave restart '{folder}'" in stopped.output
 
 
 @pytest.mark.parametrize("damage", ["cut", "emptied"])

@@ -50,6 +50,14 @@ def test_wrong_values_are_found_before_anything_runs(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.parametrize("file", ["case.toml", "experiment.toml"])
+def test_a_folder_of_something_else_is_left_alone(tmp_path, file):
+    (tmp_path / file).touch()
+    with pytest.raises(InputError, match="holds a run or a measurement"):
+        sweep(QUICK, ["drive.velocity=5 m/s, 10 m/s"], out=tmp_path, overwrite=True)
+    assert [path.name for path in tmp_path.iterdir()] == [file]
+
+
 def test_interrupted_and_resumed_sweep_has_what_single_runs_have(tmp_path):
     over = ["drive.velocity=6 m/s, 10 m/s", "wrinkles.model=quasi-static, none"]
 

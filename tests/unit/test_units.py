@@ -66,6 +66,7 @@ def test_other_units_by_pint(text: str, dimension: units.Dimension, value: float
         ("3 ms", '"ms" is a unit of time, not of length', '"2.0 mm"'),
         ("3 m s", '"m s" is a unit of m*s, not of length', '"2.0 mm"'),
         ("3 psi", '"psi" is a unit of kg/m/s**2, not of length', '"2.0 mm"'),
+        ("3 kg", '"kg" is no unit of length', '"2.0 mm"'),
         ("3 %", '"%" is a unit of pure numbers, not of length', '"2.0 mm"'),
         ("3 Mm^", '"Mm^" is no unit', '"2.0 mm"'),
         ("3 m/0", '"m/0" is no unit', '"2.0 mm"'),

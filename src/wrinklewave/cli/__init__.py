@@ -9,9 +9,10 @@ traceback.
 
 from __future__ import annotations
 
+import gc
 import sys
 from collections.abc import Callable
-from errno import EACCES, EEXIST, EISDIR, ENOENT, ENOTDIR, EPERM, EROFS
+from errno import EACCES, EEXIST, EISDIR, ENOENT, ENOSPC, ENOTDIR, EPERM, EROFS
 from functools import wraps
 from importlib import import_module
 from pkgutil import iter_modules
@@ -30,8 +31,16 @@ USERS_MISTAKES = (ENOENT, EACCES, EPERM, EROFS, ENOTDIR, EISDIR, EEXIST)
 """Errors of the operating system that a wrong path explains; others, such as a full disk, are failures."""
 
 
+COLLECTED_AFTER = 50_000
+"""Objects made until the collector looks for cycles: by default 700, and every hundredth look goes through all that the
+compiler has made, which takes 0.1 s and finds nothing."""
+FULL = "No space left on device"
+FREE_SOME = "  to mend:  free some, then go on with wrinklewave restart DIR, or --resume"
+
+
 def main() -> None:
     """Entry point: run the verb; return 2 for a mistake in the input, 1 for a failure, 130 after Ctrl-C."""
+    gc.set_threshold(COLLECTED_AFTER)
     try:
         application()()
     except WrinklewaveError as error:
@@ -40,6 +49,14 @@ def main() -> None:
         _fail("stopped", 130)
     except OSError as error:
         _fail(_system_says(error), 2 if error.errno in USERS_MISTAKES else 1)
+    except MemoryError as error:
+        _fail(f"not enough memory ({error})\n  to mend:  a coarser mesh, or fewer outputs", 1)
+    except RuntimeError as error:
+        if FULL not in str(error):
+            raise
+        _fail(
+            f"{FULL.lower()}\n{FREE_SOME}", 1
+        )  # HDF5 fails so when it closes a file that it could not write
 
 
 def application() -> typer.Typer:
@@ -92,8 +109,12 @@ def _wrinklewave(
 
 def _system_says(error: OSError) -> str:
     """What went wrong with which file, in the words of the operating system."""
+    if error.errno == ENOSPC:
+        return f"{f'{error.filename}: ' if error.filename else ''}{FULL.lower()}\n{FREE_SOME}"
     if error.filename is None or error.strerror is None:
         return str(error)
+    if error.errno == EEXIST:
+        return f"{error.filename}: is a file\n  expected: a folder for the results"
     problem = f"{error.filename}: {error.strerror[0].lower()}{error.strerror[1:]}"
     if error.errno not in USERS_MISTAKES:
         return problem

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from wrinklewave.config.case import Case
     from wrinklewave.config.solids import Film
 
+MOST_FRAMES = 100_000
 ROUNDING = 1e-9  # relative; times and places that are computed may miss their limit by rounding
 
 
@@ -145,6 +146,11 @@ def _times(case: Case) -> Iterator[InputError]:
         if time > end * (1 + ROUNDING):
             problem = f"{_ms(time)} is beyond the end of the run at {_ms(end)}"
             yield _error(key, problem, "at most solver.end_time", "lower it, or raise solver.end_time")
+    for name in ("surface_interval", "field_interval"):
+        every = getattr(case.output, name)
+        if end / every > MOST_FRAMES:
+            problem = f"{_ms(every)} gives {end / every:.2g} frames until the end of the run at {_ms(end)}"
+            yield _error(f"output.{name}", problem, f"at most {MOST_FRAMES} frames", "raise it")
     interval = case.output.surface_interval
     if end / 3 * (1 + ROUNDING) < interval <= end * (1 + ROUNDING):
         problem = f"{_ms(interval)} gives fewer than four frames until the end of the run at {_ms(end)}"

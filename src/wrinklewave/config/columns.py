@@ -63,8 +63,10 @@ def _read_rows(file: Path) -> tuple[list[int], list[list[str]]]:
             numbered = [(line, row) for line, row in enumerate(csv.reader(stream), start=1) if row]
     except FileNotFoundError as error:
         raise InputError("no such file", file=file, expected="a CSV file", cure="check the path") from error
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
-        raise InputError(f"cannot be read ({error})", file=file, expected="a CSV file") from error
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror})", file=file, expected="a CSV file") from error
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"is no table of text ({error})", file=file, expected="a CSV file") from error
     return [line for line, _ in numbered], [row for _, row in numbered]
 
 

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from wrinklewave.config.case import Case
 
 FRAMES_BEFORE = 20
+FEWEST_FRAMES = 5
 IMAGES = 60
 PIXELS_PER_METRE = 20e3
 WIRE_PLACES = (0.25, 0.5, 0.75)
@@ -55,6 +56,7 @@ def film_run(
     contrast_to_noise: float | None = None,
     frames: int | None = None,
     threads: int = 1,
+    overwrite: bool = False,
     progress: Callable[[int], None] | None = None,
     **camera: Any,
 ) -> FilmedRun:
@@ -72,12 +74,15 @@ def film_run(
         contrast_to_noise: even noise of this ratio instead of shot and read noise.
         frames: number of frames, for a compression.
         threads: that render.
+        overwrite: replace an earlier recording and what lies beside it.
         progress: called with the number of frames written.
         camera: further attributes of ``Camera``.
 
     Raises:
-        InputError: if the run cannot be read, or the camera cannot do what is asked.
+        InputError: if the run cannot be read, the camera cannot do what is asked, or there is a recording already.
     """
+    if not overwrite:
+        _demand_free(Path(video))
     surface, case = surfaces.read(run), _case_of(Path(run))
     viewer = Camera.framing(surface, scale=scale, **camera)
     if contrast_to_noise is not None:
@@ -99,7 +104,35 @@ def film_run(
         times=_image_times(surface, frames) if slow else None,
         frames_before=FRAMES_BEFORE,
     )
+    if not slow:
+        _demand_frames(recording, surface)
     return _write(recording, Path(video), surface, case, threads, progress)
+
+
+def _beside(video: Path) -> tuple[Path, Path]:
+    """Truth and experiment file of a recording."""
+    return video.with_suffix(".truth.nc"), video.with_suffix(".experiment.toml")
+
+
+def _demand_free(video: Path) -> None:
+    """See that no recording is lost, nor an experiment file that somebody has completed."""
+    for file in (video, *_beside(video)):
+        if file.exists():
+            cure = "take another name with --out, or replace what was filmed before with --overwrite"
+            raise InputError("is there already", file=file, cure=cure)
+
+
+def _demand_frames(recording: Film, surface: xr.Dataset) -> None:
+    """See that the camera is fast enough for an impact."""
+    seen = recording.n_frames - FRAMES_BEFORE
+    if seen < FEWEST_FRAMES:
+        duration = float(surface["time"].values[-1]) * 1e3
+        raise InputError(
+            f"at {recording.camera.frame_rate:g} frames/s {seen} of them fall into the {duration:.3g} ms of the impact",
+            key="--frame-rate",
+            expected=f"at least {FEWEST_FRAMES}",
+            cure="raise it, as to 50 kHz",
+        )
 
 
 def _wire_places(surface: xr.Dataset) -> tuple[float, ...]:
@@ -137,7 +170,7 @@ def _write(
     progress: Callable[[int], None] | None,
 ) -> FilmedRun:
     video = write_recording(recording, video, threads=threads, progress=progress)
-    truth, experiment = video.with_suffix(".truth.nc"), video.with_suffix(".experiment.toml")
+    truth, experiment = _beside(video)
     known = recording.truth()
     known.to_netcdf(truth, engine="h5netcdf")
     tables = _experiment(recording, video, known, surface, case)

@@ -41,15 +41,21 @@ class MeasurementFolder:
 
         Raises:
             InputError: if it holds a measurement already and neither ``resume`` nor ``overwrite`` says what to
-                do, or if it holds a run.
+                do, or a finished one of another experiment is to be resumed, or if it holds a run.
         """
         if (path / "case.toml").exists():
             raise InputError("holds a run", file=path, cure="choose another folder with --out")
         claim_folder(path, "experiment.toml", "a measurement", may_exist=resume or overwrite)
-        folder = cls(path)
+        folder, text = cls(path), experiment.to_toml()
         if not resume:
             folder._clear()
-        write_text(path / "experiment.toml", experiment.to_toml())
+        elif folder._is_finished() and (path / "experiment.toml").read_text(encoding="utf-8") != text:
+            raise InputError(
+                "holds a finished measurement of another experiment file",
+                file=path,
+                cure="--overwrite replaces it, --out takes another folder",
+            )
+        write_text(path / "experiment.toml", text)
         return folder
 
     def blocks(self, origin: str, name: str = "") -> BlockStore:
@@ -70,8 +76,12 @@ class MeasurementFolder:
             write_history(self.path / "boundary.csv", boundary_columns(surface))
         self.write_summary(summary)
 
+    def _is_finished(self) -> bool:
+        """Whether everything is written; the report comes last."""
+        return (self.path / "report.html").exists()
+
     def _clear(self) -> None:
-        for earlier in ("summary.json", "*surface.nc", "*series.csv", ".*frames/*"):
+        for earlier in ("summary.json", "report.html", "*surface.nc", "*series.csv", ".*frames/*"):
             for file in self.path.glob(earlier):
                 file.unlink()
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wrinklewave import surface
+from wrinklewave.config import case_from_text
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.boundary_history import boundary_columns
 from wrinklewave.experiments.probes import probe_columns
@@ -54,14 +55,35 @@ class RunFolder:
         """Make the folder ready for a run, and put the resolved case there.
 
         Raises:
-            InputError: if it holds a run already and neither ``resume`` nor ``overwrite`` says what to do.
+            InputError: if it holds a run already and neither ``resume`` nor ``overwrite`` says what to do, or a run of
+                another case is to be resumed.
         """
         folder = cls(path)
         claim_folder(path, "case.toml", "a run", may_exist=resume or overwrite)
-        if not resume:
+        if resume:
+            folder.demand(case)
+        else:
             folder._clear()
         write_text(path / "case.toml", case.to_toml())
         return folder
+
+    def demand(self, case: Case) -> None:
+        """See that the run that is here, if any, is one of this case: going on with it would replace its results.
+
+        Raises:
+            InputError: if it is one of another case.
+        """
+        file = self.path / "case.toml"
+        if not file.exists():
+            return
+        earlier = case_from_text(file.read_text(encoding="utf-8"), source=file)
+        if earlier != case:
+            raise InputError(
+                f"is of another case, with another {', '.join(_differences(earlier, case))}",
+                file=file,
+                expected="the case that the run was started with",
+                cure="give the same case and --set values, or another folder; --overwrite replaces the run",
+            )
 
     def is_finished(self) -> bool:
         """Whether the run has ended and everything is written; its report comes last."""
@@ -113,6 +135,20 @@ class RunFolder:
             (self.path / name).unlink(missing_ok=True)
         for file in (self.path / "figures").glob("*.png"):
             file.unlink()
+
+
+def _differences(one: Case, other: Case) -> list[str]:
+    """Dotted keys in which two cases differ."""
+    return [".".join(map(str, keys)) for keys in _unlike(one.model_dump(), other.model_dump())]
+
+
+def _unlike(one: Any, other: Any) -> Iterator[tuple[str, ...]]:
+    if not (isinstance(one, dict) and isinstance(other, dict)):
+        if one != other:
+            yield ()
+        return
+    for key in dict.fromkeys((*one, *other)):
+        yield from ((key, *rest) for rest in _unlike(one.get(key), other.get(key)))
 
 
 def claim_folder(path: Path, marker: str, what: str, *, may_exist: bool) -> None:

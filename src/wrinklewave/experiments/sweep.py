@@ -170,6 +170,8 @@ def _case_of(case: str | Path | Case, overrides: Sequence[str], own: Sequence[st
 
 def _prepare(members: Sequence[Member], out: Path, *, resume: bool, overwrite: bool) -> None:
     """See that the folder is free, or holds this very sweep."""
+    if any((out / name).exists() for name in ("case.toml", "experiment.toml")):
+        raise InputError("holds a run or a measurement", file=out, cure="choose another folder with --out")
     earlier = sorted((out / "runs").glob("*/case.toml"))
     if earlier and not (resume or overwrite):
         cure = "--resume goes on with it, --overwrite replaces it, --out takes another folder"

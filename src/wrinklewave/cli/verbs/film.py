@@ -39,7 +39,8 @@ Frames = Annotated[
     int | None, typer.Option(metavar="N", help="Number of pictures of a quasi-static run; 60 if left out.")
 ]
 Seed = Annotated[int, typer.Option(help="Of the noise.")]
-Threads = Annotated[int, typer.Option(metavar="N", help="Threads that render.")]
+Threads = Annotated[int, typer.Option(metavar="N", min=1, help="Threads that render.")]
+Overwrite = Annotated[bool, typer.Option("--overwrite", help="Replace an earlier recording of that name.")]
 
 
 def film(
@@ -56,6 +57,7 @@ def film(
     frames: Frames = None,
     seed: Seed = 0,
     threads: Threads = 2,
+    overwrite: Overwrite = False,
 ) -> None:
     """Film a run with the synthetic camera: a recording, its truth, and an experiment file for measure."""
     from math import radians
@@ -63,13 +65,14 @@ def film(
     from wrinklewave.experiments.filming import film_run
     from wrinklewave.units import FREQUENCY, LENGTH, TIME
 
-    bits = bit_depth or (10 if out.suffix.lower() in (".mp4", ".mov") else 12)
+    usual = 10 if out.suffix.lower() in (".mp4", ".mov") else 12
+    bits = usual if bit_depth is None else bit_depth
     camera: dict[str, Any] = {
         "frame_rate": _quantity("--frame-rate", frame_rate, FREQUENCY),
         "exposure": _quantity("--exposure", exposure, TIME),
         "blur": blur,
         "bit_depth": bits,
-        "black_level": 2**bits // 64,
+        "black_level": int(2.0**bits) // 64,
         "tilt": radians(tilt),
         "seed": seed,
     }
@@ -82,6 +85,7 @@ def film(
             contrast_to_noise=contrast_to_noise,
             frames=frames,
             threads=threads,
+            overwrite=overwrite,
             progress=show,
             **camera,
         )

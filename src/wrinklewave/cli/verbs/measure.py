@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -67,6 +68,7 @@ def measure(
 
     Of a quasi-static test: amplitude and wavelength against strain, critical strain and wavelength.
     """
+    begin = time.perf_counter()
     from wrinklewave.config.experiment import load_experiment
 
     loaded = load_experiment(experiment, overrides or ())
@@ -76,13 +78,13 @@ def measure(
         from wrinklewave.experiments.measure import measure as measure_impact
         from wrinklewave.report.measurement import present_measurement
 
-        _carry_out(measure_impact, present_measurement, HEADLINE, loaded, folder, options)
+        _carry_out(measure_impact, present_measurement, HEADLINE, loaded, folder, options, begin)
     else:
         from wrinklewave.experiments.measure_quasi_static import measure_quasi_static
         from wrinklewave.report.quasi_static import present_measured_test
 
         _carry_out(
-            measure_quasi_static, present_measured_test, QUASI_STATIC_HEADLINE, loaded, folder, options
+            measure_quasi_static, present_measured_test, QUASI_STATIC_HEADLINE, loaded, folder, options, begin
         )
 
 
@@ -93,22 +95,44 @@ def _carry_out(
     experiment: Experiment,
     folder: Path,
     options: dict[str, Any],
+    begin: float,
 ) -> None:
-    """Measure by a procedure and show what came out; exit code 130 if it was interrupted."""
+    """Measure by a procedure and show what came out; exit code 130 if it was interrupted.
+
+    ``begin`` is when the command was given, on the clock of ``time.perf_counter``.
+    """
+    from rich.markup import escape
+
     from wrinklewave.cli.console import console
-    from wrinklewave.cli.progress import COMPILING, shown_progress
+    from wrinklewave.cli.progress import MEASURING, shown_progress
     from wrinklewave.experiments.interruption import Outcome
     from wrinklewave.report import summary_table
 
     screen = console()
-    begin = time.perf_counter()
-    with shown_progress(experiment.name, COMPILING) as progress:
-        found = procedure(experiment, out=folder, progress=progress, **options)
-    if found.outcome is not Outcome.FINISHED:
-        screen.print(found.outcome.value)
-        raise typer.Exit(130)
-    report = present(found)
+    with _resumable(folder):
+        with shown_progress(experiment.name, MEASURING) as progress:
+            found = procedure(experiment, out=folder, progress=progress, **options)
+        if found.outcome is not Outcome.FINISHED:
+            raise KeyboardInterrupt
+        measured = time.perf_counter()
+        with screen.status("figures and report"):
+            report = present(found)
     screen.print(summary_table(found.summary, headline))
     for warning in found.warnings:
-        screen.print(f"[yellow]{warning}[/yellow]")
-    screen.print(f"finished in {time.perf_counter() - begin:.1f} s; look at {report}")
+        screen.print(f"[yellow]{escape(warning)}[/yellow]")
+    end = time.perf_counter()
+    print(
+        f"finished in {end - begin:.1f} s, {end - measured:.1f} s of them for figures and report; look at {report}"
+    )
+
+
+@contextmanager
+def _resumable(folder: Path) -> Iterator[None]:
+    """Say how to go on after Ctrl-C, once there is something to go on with."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        if not (folder / "experiment.toml").exists():
+            raise
+        print("interrupted; go on with the same command and --resume")
+        raise typer.Exit(130) from interrupt

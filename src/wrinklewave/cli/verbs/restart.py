@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Annotated
 
@@ -19,19 +20,16 @@ def restart(
 
     A run that was killed before its first checkpoint starts again; one that is finished is left alone.
     """
-    from wrinklewave.cli.console import console
+    begin = time.perf_counter()
     from wrinklewave.cli.verbs.simulate import run_and_present
     from wrinklewave.config import load_case
     from wrinklewave.errors import InputError
-    from wrinklewave.experiments.run_folder import RunFolder
 
     case_file = folder / "case.toml"
     if not case_file.exists():
         raise InputError(
             "holds no run", file=folder, expected="the folder of an earlier run, with its case.toml"
         )
-    if not all_bulk and RunFolder(folder).is_finished():
-        console().print(f"finished already; look at {folder / 'report.html'}")
-        return
     where = {"threads": threads, "device": device}
-    run_and_present(load_case(case_file), folder, where, resume=True, overwrite=False, all_bulk=all_bulk)
+    case = load_case(case_file)
+    run_and_present(case, folder, where, begin, resume=True, overwrite=False, all_bulk=all_bulk)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -63,23 +65,32 @@ def simulate(
     all_bulk: AllBulk = False,
 ) -> None:
     """Simulate a case; write surface motion, fields, energies, figures and a report."""
+    begin = time.perf_counter()
     from wrinklewave.config import load_case
 
     loaded = load_case(case, overrides or ())
     folder = out or Path("runs") / case.stem
     where = {"threads": threads, "device": device}
-    run_and_present(loaded, folder, where, resume=resume, overwrite=overwrite, all_bulk=all_bulk)
+    run_and_present(loaded, folder, where, begin, resume=resume, overwrite=overwrite, all_bulk=all_bulk)
 
 
 def run_and_present(
-    case: Case, folder: Path, where: dict[str, Any], *, resume: bool, overwrite: bool, all_bulk: bool
+    case: Case,
+    folder: Path,
+    where: dict[str, Any],
+    begin: float,
+    *,
+    resume: bool,
+    overwrite: bool,
+    all_bulk: bool,
 ) -> None:
     """Run a case in ``folder`` and show what came out; exit code 130 if it was interrupted.
 
-    ``where`` are the threads and the device, as :func:`wrinklewave.simulate` takes them.
+    ``where`` are the threads and the device, as :func:`wrinklewave.simulate` takes them; ``begin`` is when the command
+    was given, on the clock of ``time.perf_counter``.
     """
     from wrinklewave.cli.console import console
-    from wrinklewave.cli.progress import COMPILING, shown_progress
+    from wrinklewave.cli.progress import STEPPING, shown_progress
     from wrinklewave.experiments.bulk_choices import other_bulk_choices
     from wrinklewave.experiments.interruption import Outcome
     from wrinklewave.experiments.paper_statements import BULK_CHOICES
@@ -88,44 +99,58 @@ def run_and_present(
     from wrinklewave.report import comparison_table
     from wrinklewave.report.run import compare_with_paper, present
 
-    out = console()
-    with shown_progress(case.name, COMPILING) as progress:
-        run = run_case(
-            case,
-            out=folder,
-            **where,
-            resume=resume,
-            overwrite=overwrite,
-            keep_checkpoint=True,
-            progress=progress,
-        )
+    out, place = console(), RunFolder(folder)
+    if resume and not all_bulk and place.is_finished():
+        place.demand(case)
+        print(f"finished already; look at {folder / 'report.html'}")
+        return
+    try:
+        with shown_progress(case.name, STEPPING) as progress:
+            run = run_case(
+                case,
+                out=folder,
+                **where,
+                resume=resume,
+                overwrite=overwrite,
+                keep_checkpoint=True,
+                progress=progress,
+            )
+    except KeyboardInterrupt as interrupt:
+        if not place.checkpoint.exists():
+            raise
+        raise _interrupted("before all was written", folder) from interrupt
     if run.outcome is not Outcome.FINISHED:
         raise _interrupted(f"at {1e3 * run.summary['simulated_time_s']:g} ms", folder)
     summaries: dict[str, dict[str, Any]] = {case.substrate.bulk_response: run.summary}
     if all_bulk:
-        with shown_progress(f"{case.name}, other bulk responses", COMPILING) as progress:
+        with shown_progress(f"{case.name}, other bulk responses", STEPPING) as progress:
             summaries = other_bulk_choices(
                 run, **where, resume=resume, progress=lambda choice, state: progress(state)
             )
     rows = compare_with_paper(run, summaries)
+    simulated = time.perf_counter()
     try:
-        present(run, rows)
+        with out.status("figures and report"):
+            present(run, rows)
     except KeyboardInterrupt as interrupt:
         raise _interrupted("while the report was written", folder) from interrupt
-    RunFolder(folder).close(run)
+    place.close(run)
     if all_bulk:
         out.print(comparison_table(rows))
     _describe(run)
+    end = time.perf_counter()
+    print(
+        f"finished in {end - begin:.1f} s, {end - simulated:.1f} s of them for figures and report; "
+        f"look at {folder / 'report.html'}"
+    )
     missing = [choice for choice in BULK_CHOICES if all_bulk and choice not in summaries]
     if missing:
         raise _interrupted(f"before {' and '.join(missing)}", folder, "--all-bulk")
 
 
 def _interrupted(where: str, folder: Path, *options: str) -> typer.Exit:
-    from wrinklewave.cli.console import console
-
-    console().print(
-        f"interrupted {where}; go on with:  {' '.join(('wrinklewave restart', str(folder), *options))}"
+    print(
+        f"interrupted {where}; go on with:  {shlex.join(('wrinklewave', 'restart', str(folder), *options))}"
     )
     return typer.Exit(130)
 
@@ -140,4 +165,3 @@ def _describe(run: Run) -> None:
     out.print(summary_table(run.summary, [name for name in HEADLINE if not (slow and "_speed_" in name)]))
     for warning in warnings(run.summary):
         out.print(f"[yellow]{warning}[/yellow]")
-    out.print(f"finished in {run.summary['wall_time_s']:.1f} s; look at {run.folder / 'report.html'}")  # type: ignore[operator]

@@ -11,6 +11,8 @@ from wrinklewave.cli.options import CaseFile, Overrides
 from wrinklewave.cli.verbs.simulate import Device, Overwrite
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from wrinklewave.experiments.sweep import SweepProgress
 
 Over = Annotated[
@@ -51,31 +53,36 @@ def sweep(
 ) -> None:
     """Simulate every combination of values; write their results as one dataset and one table."""
     from wrinklewave.cli.console import console
+    from wrinklewave.cli.progress import told_if_slow
     from wrinklewave.experiments.interruption import Outcome
     from wrinklewave.experiments.sweep import sweep as run_sweep
 
     folder = out or Path("runs") / f"{case.stem}-sweep"
-    outcome, table = run_sweep(
-        case,
-        over,
-        out=folder,
-        overrides=overrides or (),
-        jobs=jobs,
-        device=device,
-        resume=resume,
-        overwrite=overwrite,
-        progress=_say,
-    )
+    with told_if_slow(
+        f"{case.stem}: the first runs are under way; on a new machine they wait for kernels"
+    ) as begun:
+        outcome, table = run_sweep(
+            case,
+            over,
+            out=folder,
+            overrides=overrides or (),
+            jobs=jobs,
+            device=device,
+            resume=resume,
+            overwrite=overwrite,
+            progress=lambda state: _say(state, begun),
+        )
     out_ = console()
     if outcome is not Outcome.FINISHED:
         out_.print(outcome.value)
         raise typer.Exit(130)
     failed = int((table["outcome"] != "finished").sum())
-    out_.print(f"{table['outcome'].size} runs, {failed} of them failed; look at {folder / 'sweep.csv'}")
+    print(f"{table['outcome'].size} runs, {failed} of them failed; look at {folder / 'sweep.csv'}")
 
 
-def _say(state: SweepProgress) -> None:
+def _say(state: SweepProgress, begun: Callable[[], None]) -> None:
     from wrinklewave.cli.console import console
 
+    begun()
     where = f"{state.done} of {state.total}, {state.runs_per_minute:.3g} runs per minute"
     console().print(f"{where}: {state.name}: {state.summary['outcome']}", highlight=False)

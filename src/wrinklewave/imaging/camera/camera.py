@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from wrinklewave.errors import InputError
+from wrinklewave.units import engineering
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -18,6 +19,7 @@ MOST_PIXELS = 40_000_000
 """Of a frame, which is rendered as a whole; far beyond what high-speed cameras have."""
 SMALLEST_BLUR = 0.3
 LARGEST_TILT = math.radians(3.0)
+POSITIVE = "a positive number"
 
 
 @dataclass(frozen=True)
@@ -66,24 +68,47 @@ class Camera:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        rules = {
-            "scale": (self.scale > 0, "a positive number of pixels per metre"),
+        for name, (holds, found, expected) in self._rules().items():
+            if not holds:
+                raise InputError(found, file="camera", key=name, expected=expected)
+
+    def _rules(self) -> dict[str, tuple[bool, str, str]]:
+        """By attribute: whether it holds, its value in words, what is expected."""
+        height, width = self.shape
+        between = 1 / self.frame_rate if self.frame_rate > 0 else 0.0
+        return {
+            "scale": _positive(self.scale, f"{self.scale * 1e-3:g} pixels per mm"),
             "shape": (
                 min(self.shape) >= 8 and math.prod(self.shape) <= MOST_PIXELS,
+                f"frames of {width} x {height} pixels",
                 f"from 8 x 8 to {MOST_PIXELS / 1e6:g} million pixels: choose another scale",
             ),
-            "blur": (self.blur >= SMALLEST_BLUR, f"at least {SMALLEST_BLUR} px: no lens is sharper"),
-            "tilt": (abs(self.tilt) <= LARGEST_TILT, "at most 3 degrees (0.052 rad)"),
-            "frame_rate": (self.frame_rate > 0, "a positive number of frames per second"),
-            "exposure": (0 <= self.exposure <= 1 / self.frame_rate, "between 0 and the time between frames"),
-            "bit_depth": (8 <= self.bit_depth <= 16, "8 to 16"),
-            "black_level": (0 <= self.black_level < 2**self.bit_depth // 2, "well below the white level"),
-            "full_well": (self.full_well > 0, "a positive number of electrons, or infinity"),
-            "read_noise": (self.read_noise >= 0, "not negative"),
+            "blur": (
+                self.blur >= SMALLEST_BLUR,
+                f"{self.blur:g} px",
+                f"at least {SMALLEST_BLUR} px: no lens is sharper",
+            ),
+            "tilt": (
+                abs(self.tilt) <= LARGEST_TILT,
+                f"{math.degrees(self.tilt):g} degrees",
+                "at most 3 degrees",
+            ),
+            "frame_rate": _positive(self.frame_rate, f"{self.frame_rate:g} frames per second"),
+            "exposure": (
+                0 <= self.exposure <= between,
+                engineering(self.exposure, "s"),
+                f"from 0 to the time between frames, {engineering(between, 's')}",
+            ),
+            "bit_depth": (8 <= self.bit_depth <= 16, f"{self.bit_depth} bits", "8 to 16"),
+            "black_level": (
+                0 <= self.black_level < 2**self.bit_depth // 2,
+                f"{self.black_level}",
+                "well below the white level",
+            ),
+            "full_well": _positive(self.full_well, f"{self.full_well:g} electrons"),
+            "read_noise": (self.read_noise >= 0, f"{self.read_noise:g}", "not negative"),
+            "seed": (self.seed >= 0, f"{self.seed}", "not negative"),
         }
-        for name, (holds, expected) in rules.items():
-            if not holds:
-                raise InputError(f"{getattr(self, name)!r}", file="camera", key=name, expected=expected)
 
     @classmethod
     def framing(cls, surface: xr.Dataset, *, scale: float, margin: float = 2e-3, **others: object) -> Self:
@@ -94,6 +119,8 @@ class Camera:
             scale: pixels per metre.
             others: further attributes of the camera.
         """
+        if not 0 < scale < math.inf:
+            raise InputError(f"{scale * 1e-3:g} pixels per mm", file="camera", key="scale", expected=POSITIVE)
         rise = float(np.nanmax(surface["u_y"].values, initial=0.0))
         fall = -float(np.nanmin(surface["u_y"].values, initial=0.0))
         width = (float(surface.attrs["length"]) + 2 * margin) * scale
@@ -120,9 +147,7 @@ class Camera:
     def at_contrast_to_noise(self, ratio: float) -> Self:
         """The same camera with even noise (no shot noise) of the given contrast-to-noise ratio."""
         if not ratio > 0:
-            raise InputError(
-                f"{ratio:g}", file="camera", key="contrast_to_noise", expected="a positive number"
-            )
+            raise InputError(f"{ratio:g}", file="camera", key="contrast_to_noise", expected=POSITIVE)
         return replace(self, full_well=math.inf, read_noise=self.contrast / ratio)
 
     def to_pixels(self, x: ArrayLike, y: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -137,3 +162,7 @@ class Camera:
     def _edge_variance(self) -> float:
         shot = 0.5 * (self.levels.sample + self.levels.background) / self.full_well
         return self.read_noise**2 + shot
+
+
+def _positive(value: float, found: str) -> tuple[bool, str, str]:
+    return value > 0, found, POSITIVE
