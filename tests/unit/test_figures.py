@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import importlib
 import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +15,10 @@ import pytest
 from support.settings import SETTINGS
 from wrinklewave import figures
 from wrinklewave.analysis.analyse import analyse
+from wrinklewave.figures.beside import Helper
+from wrinklewave.figures.compression import COMPRESSION_FIGURES
+from wrinklewave.figures.registry import Registry
+from wrinklewave.figures.side_by_side import COMPARISON_FIGURES
 from wrinklewave.wrinkling.travelling_pulse import TravellingPulse
 
 TIMES = (0.38e-3, 1.2e-3)
@@ -75,6 +81,31 @@ def test_all_figures_are_written(inputs: figures.FigureInputs, tmp_path: Path) -
     assert list(files) == list(figures.FIGURES)
     for path in files.values():
         assert path.read_bytes().startswith(b"\x89PNG")
+
+
+def test_another_process_draws_the_same(inputs: figures.FigureInputs, tmp_path: Path) -> None:
+    alone = figures.FIGURES.write(tmp_path / "alone", inputs, kinds={"simulation"})
+    helper = Helper()
+    helper.begin(figures.FIGURES.place, inputs, {name: tmp_path / f"{name}.png" for name in alone})
+    assert helper.has_drawn()
+    for name, file in alone.items():
+        assert (tmp_path / f"{name}.png").read_bytes() == file.read_bytes()
+
+
+def test_what_another_process_does_not_bring_is_drawn_here(
+    inputs: figures.FigureInputs, tmp_path: Path
+) -> None:
+    helper = Helper()
+    helper.end()
+    files = figures.FIGURES.write(tmp_path, inputs, kinds={"simulation"}, helper=helper)
+    assert list(files) == list(figures.FIGURES)
+    assert all(file.exists() for file in files.values())
+
+
+@pytest.mark.parametrize("registry", [figures.FIGURES, COMPARISON_FIGURES, COMPRESSION_FIGURES])
+def test_another_process_finds_the_registry(registry: Registry[Any]) -> None:
+    module, name = registry.place.split(":")
+    assert getattr(importlib.import_module(module), name) is registry
 
 
 def test_figures_without_their_inputs_are_left_out(inputs: figures.FigureInputs, tmp_path: Path) -> None:

@@ -62,7 +62,7 @@ class FigureInputs:
         return bool(np.fmax.reduce(np.abs(self.subject.u_y), axis=None) > 0.0)
 
 
-FIGURES: Registry[FigureInputs] = Registry()
+FIGURES: Registry[FigureInputs] = Registry("wrinklewave.figures:FIGURES")
 
 
 def figure_inputs(

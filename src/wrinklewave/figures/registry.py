@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -11,6 +11,8 @@ from wrinklewave.figures.style import RC
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+    from wrinklewave.figures.beside import Helper
 
 Inputs = TypeVar("Inputs")
 
@@ -44,7 +46,15 @@ class FigureSpec(Generic[Inputs]):
 
 
 class Registry(dict[str, FigureSpec[Inputs]], Generic[Inputs]):
-    """Figures that are drawn from one kind of inputs, by name, in the order in which they were registered."""
+    """Figures that are drawn from one kind of inputs, by name, in the order in which they were registered.
+
+    Args:
+        place: "module:name" under which another process finds it.
+    """
+
+    def __init__(self, place: str) -> None:
+        super().__init__()
+        self.place = place
 
     def figure(
         self,
@@ -69,24 +79,38 @@ class Registry(dict[str, FigureSpec[Inputs]], Generic[Inputs]):
 
         return register
 
-    def write(self, folder: str | Path, inputs: Inputs, *, kinds: Collection[str]) -> dict[str, Path]:
+    def write(
+        self, folder: str | Path, inputs: Inputs, *, kinds: Collection[str], helper: Helper | None = None
+    ) -> dict[str, Path]:
         """Write every figure that is possible as PNG; return the files by name.
 
         Args:
             folder: made if need be.
             inputs: what figures are drawn from.
             kinds: of the surface motions in them, "simulation" or "measurement".
+            helper: draws part of them beside this process.
         """
-        import matplotlib
-
         folder = Path(folder)
         folder.mkdir(parents=True, exist_ok=True)
-        options: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}}  # a third faster, a fifth larger
-        files = {}
-        for name, spec in self.items():
-            if spec.possible(inputs):
-                files[name] = folder / f"{spec.of(kinds).name}.png"
-                drawing = spec.draw(inputs)
-                with matplotlib.rc_context(RC):
-                    drawing.savefig(files[name], **options)
+        files = {
+            name: folder / f"{spec.of(kinds).name}.png"
+            for name, spec in self.items()
+            if spec.possible(inputs)
+        }
+        theirs = dict(list(files.items())[1::2]) if helper else {}
+        if helper:
+            helper.begin(self.place, inputs, theirs)
+        self.draw(inputs, {name: file for name, file in files.items() if name not in theirs})
+        if helper and not helper.has_drawn():
+            self.draw(inputs, theirs)
         return files
+
+    def draw(self, inputs: Inputs, files: Mapping[str, Path]) -> None:
+        """Draw figures, by name, into PNG files."""
+        import matplotlib
+
+        options: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}}  # a third faster, a fifth larger
+        for name, file in files.items():
+            drawing = self[name].draw(inputs)
+            with matplotlib.rc_context(RC):
+                drawing.savefig(file, **options)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from wrinklewave.experiments.measure import Measurement
+    from wrinklewave.figures.beside import Helper
     from wrinklewave.imaging.calibration import PixelMap
     from wrinklewave.imaging.frames import FrameSource
 
@@ -32,15 +33,18 @@ LOCKING_CAPTION = (
 )
 
 
-def present_measurement(measurement: Measurement) -> Path:
-    """Write ``figures/`` and ``report.html`` into the folder of a finished measurement; return the report."""
+def present_measurement(measurement: Measurement, helper: Helper | None = None) -> Path:
+    """Write ``figures/`` and ``report.html`` into the folder of a finished measurement; return the report.
+
+    ``helper`` draws part of the figures beside this process.
+    """
     folder, surface, analysis = measurement.folder, measurement.surface, measurement.analysis
     assert folder is not None  # only measurements with a folder are presented
     assert surface is not None  # a finished measurement has one
     assert analysis is not None  # ... and this
     settings = measurement.experiment.analysis
     inputs = figure_inputs(surface, analysis, positions=settings.positions, times=settings.times)
-    figures = FIGURES.write(folder / "figures", inputs, kinds={"measurement"})
+    figures = FIGURES.write(folder / "figures", inputs, kinds={"measurement"}, helper=helper)
     pictures = [
         _saved(folder / "figures" / "detections.png", _detections(measurement), DETECTIONS_CAPTION),
         _saved(

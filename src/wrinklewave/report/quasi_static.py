@@ -20,6 +20,7 @@ from wrinklewave.report.page import ReportContext, environment, picture
 if TYPE_CHECKING:
     from wrinklewave.experiments.measure_quasi_static import MeasuredSeries, QuasiStaticMeasurement
     from wrinklewave.experiments.quasi_static_test import QuasiStaticTest
+    from wrinklewave.figures.beside import Helper
 
 HEADLINE = (
     "critical_strain",
@@ -34,8 +35,11 @@ HEADLINE = (
 )
 
 
-def present_measured_test(measurement: QuasiStaticMeasurement) -> Path:
-    """Write ``figures/`` and ``report.html`` into the folder of a finished measurement; return the report."""
+def present_measured_test(measurement: QuasiStaticMeasurement, helper: Helper | None = None) -> Path:
+    """Write ``figures/`` and ``report.html`` into the folder of a finished measurement; return the report.
+
+    ``helper`` draws part of the figures beside this process.
+    """
     assert measurement.folder is not None  # only measurements with a folder are presented
     assert measurement.test is not None  # a finished measurement has one
     return present_quasi_static(
@@ -45,6 +49,7 @@ def present_measured_test(measurement: QuasiStaticMeasurement) -> Path:
         description=measurement.experiment.experiment.description,
         experiment=measurement.experiment.to_toml(),
         warnings=measurement.warnings,
+        helper=helper,
     )
 
 
@@ -56,6 +61,7 @@ def present_quasi_static(
     description: str = "",
     experiment: str = "",
     warnings: Sequence[str] = (),
+    helper: Helper | None = None,
 ) -> Path:
     """Write ``figures/`` and ``report.html`` of a test into a folder; return the report."""
     context = ReportContext(
@@ -63,7 +69,7 @@ def present_quasi_static(
         description=description,
         outcome=_what_was_done(inputs.test),
         summary=inputs.test.summary,
-        figures=COMPRESSION_FIGURES.write(folder / "figures", inputs, kinds=()),
+        figures=COMPRESSION_FIGURES.write(folder / "figures", inputs, kinds=(), helper=helper),
         warnings=warnings or inputs.test.warnings,
         case=experiment,
         versions=versions(),

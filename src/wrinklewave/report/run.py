@@ -17,6 +17,7 @@ from wrinklewave.theory.report import report as theory_report
 
 if TYPE_CHECKING:
     from wrinklewave.experiments.simulate import Run
+    from wrinklewave.figures.beside import Helper
 
 IMBALANCE_LIMIT, HOURGLASS_LIMIT = 1e-3, 1e-2
 
@@ -35,10 +36,13 @@ def compare_with_paper(run: Run, summaries: Mapping[str, Mapping[str, Any]]) -> 
     return paper_table(summaries, theory)
 
 
-def present(run: Run, comparison: Sequence[Row]) -> None:
-    """Write ``figures/``, ``comparison.json`` and ``report.html`` into the folder of a finished run."""
+def present(run: Run, comparison: Sequence[Row], helper: Helper | None = None) -> None:
+    """Write ``figures/``, ``comparison.json`` and ``report.html`` into the folder of a finished run.
+
+    ``helper`` draws part of the figures beside this process.
+    """
     assert run.folder is not None  # only runs with a folder are presented
-    figures = FIGURES.write(run.folder / "figures", inputs_of(run), kinds={"simulation"})
+    figures = FIGURES.write(run.folder / "figures", inputs_of(run), kinds={"simulation"}, helper=helper)
     (run.folder / "comparison.json").write_text(
         json.dumps(as_json(comparison), indent=2) + "\n", encoding="utf-8"
     )

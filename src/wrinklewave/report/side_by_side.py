@@ -18,6 +18,8 @@ from wrinklewave.report.page import ReportContext, environment, picture
 if TYPE_CHECKING:
     from rich.table import Table
 
+    from wrinklewave.figures.beside import Helper
+
 HEADLINE = (
     "recorded_contact_time_s",
     "boundary_displacement_max_m",
@@ -51,11 +53,13 @@ class TableRow:
     unit: str
 
 
-def present_comparison(comparison: Comparison, folder: Path) -> Path:
-    """Write ``figures/``, ``comparison.json`` and ``report.html`` into a folder; return the report."""
-    figures = COMPARISON_FIGURES.write(
-        folder / "figures", compared_inputs(comparison), kinds=_kinds(comparison)
-    )
+def present_comparison(comparison: Comparison, folder: Path, helper: Helper | None = None) -> Path:
+    """Write ``figures/``, ``comparison.json`` and ``report.html`` into a folder; return the report.
+
+    ``helper`` draws part of the figures beside this process.
+    """
+    inputs, kinds = compared_inputs(comparison), _kinds(comparison)
+    figures = COMPARISON_FIGURES.write(folder / "figures", inputs, kinds=kinds, helper=helper)
     write_json(folder / "comparison.json", comparison.as_json())
     report = folder / "report.html"
     write_text(report, comparison_page(comparison, figures))

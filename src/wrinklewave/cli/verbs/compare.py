@@ -10,7 +10,11 @@ import typer
 from wrinklewave.cli.options import Overrides
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     import xarray as xr
+
+    from wrinklewave.figures.beside import Helper
 
 Motions = Annotated[
     list[Path],
@@ -32,6 +36,15 @@ def compare(
     All are analysed with the parameters that the first one that records any has; --set "analysis.KEY=VALUE"
     changes them.
     """
+    from wrinklewave.figures.beside import helper_beside
+
+    with helper_beside() as helper:
+        _compare(motions, out, names, overrides or (), helper)
+
+
+def _compare(
+    motions: list[Path], out: Path, names: str | None, overrides: Sequence[str], helper: Helper | None
+) -> None:
     from wrinklewave import surface as surfaces
     from wrinklewave.cli.console import console
     from wrinklewave.config.recorded import recorded_analysis
@@ -45,10 +58,12 @@ def compare(
         raise InputError("holds a run or a measurement", file=out, cure="choose another folder with --out")
     found = [surfaces.read(path) for path in motions]
     named = dict(zip(_names(names, motions, found), found, strict=True))
-    settings = recorded_analysis([surface.attrs for surface in found], overrides or ())
+    settings = recorded_analysis([surface.attrs for surface in found], overrides)
     comparison = compare_surfaces(named, settings)
     out.mkdir(parents=True, exist_ok=True)
-    report = present_comparison(comparison, out)
+    for earlier in (*out.glob("boundary-*.csv"), *out.glob("figures/*.png")):
+        earlier.unlink()
+    report = present_comparison(comparison, out, helper)
     for number, surface in enumerate(found, start=1):
         if surface["x_boundary"].notnull().sum() > 1:  # a struck end in sight
             write_history(out / f"boundary-{number}.csv", boundary_columns(surface))

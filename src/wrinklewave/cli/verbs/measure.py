@@ -90,7 +90,7 @@ def measure(
 
 def _carry_out(
     procedure: Callable[..., Any],
-    present: Callable[[Any], Path],
+    present: Callable[..., Path],
     headline: Sequence[str],
     experiment: Experiment,
     folder: Path,
@@ -106,17 +106,18 @@ def _carry_out(
     from wrinklewave.cli.console import console
     from wrinklewave.cli.progress import MEASURING, shown_progress
     from wrinklewave.experiments.interruption import Outcome
+    from wrinklewave.figures.beside import helper_beside
     from wrinklewave.report import summary_table
 
     screen = console()
-    with _resumable(folder):
+    with helper_beside() as helper, _resumable(folder):
         with shown_progress(experiment.name, MEASURING) as progress:
             found = procedure(experiment, out=folder, progress=progress, **options)
         if found.outcome is not Outcome.FINISHED:
             raise KeyboardInterrupt
         measured = time.perf_counter()
         with screen.status("figures and report"):
-            report = present(found)
+            report = present(found, helper)
     screen.print(summary_table(found.summary, headline))
     for warning in found.warnings:
         screen.print(f"[yellow]{escape(warning)}[/yellow]")

@@ -13,6 +13,7 @@ from wrinklewave.cli.options import CaseFile, Overrides
 
 if TYPE_CHECKING:
     from wrinklewave.config import Case
+    from wrinklewave.experiments.run_folder import RunFolder
     from wrinklewave.experiments.simulate import Run
 
 HEADLINE = (
@@ -90,53 +91,33 @@ def run_and_present(
     was given, on the clock of ``time.perf_counter``.
     """
     from wrinklewave.cli.console import console
-    from wrinklewave.cli.progress import STEPPING, shown_progress
-    from wrinklewave.experiments.bulk_choices import other_bulk_choices
-    from wrinklewave.experiments.interruption import Outcome
-    from wrinklewave.experiments.paper_statements import BULK_CHOICES
     from wrinklewave.experiments.run_folder import RunFolder
-    from wrinklewave.experiments.simulate import simulate as run_case
-    from wrinklewave.report import comparison_table
-    from wrinklewave.report.run import compare_with_paper, present
+    from wrinklewave.figures.beside import helper_beside
 
-    out, place = console(), RunFolder(folder)
+    place = RunFolder(folder)
     if resume and not all_bulk and place.is_finished():
         place.demand(case)
         print(f"finished already; look at {folder / 'report.html'}")
         return
-    try:
-        with shown_progress(case.name, STEPPING) as progress:
-            run = run_case(
-                case,
-                out=folder,
-                **where,
-                resume=resume,
-                overwrite=overwrite,
-                keep_checkpoint=True,
-                progress=progress,
-            )
-    except KeyboardInterrupt as interrupt:
-        if not place.checkpoint.exists():
-            raise
-        raise _interrupted("before all was written", folder) from interrupt
-    if run.outcome is not Outcome.FINISHED:
-        raise _interrupted(f"at {1e3 * run.summary['simulated_time_s']:g} ms", folder)
-    summaries: dict[str, dict[str, Any]] = {case.substrate.bulk_response: run.summary}
-    if all_bulk:
-        with shown_progress(f"{case.name}, other bulk responses", STEPPING) as progress:
-            summaries = other_bulk_choices(
-                run, **where, resume=resume, progress=lambda choice, state: progress(state)
-            )
-    rows = compare_with_paper(run, summaries)
-    simulated = time.perf_counter()
-    try:
-        with out.status("figures and report"):
-            present(run, rows)
-    except KeyboardInterrupt as interrupt:
-        raise _interrupted("while the report was written", folder) from interrupt
+    with helper_beside() as helper:
+        from wrinklewave.experiments.paper_statements import BULK_CHOICES
+        from wrinklewave.report import comparison_table
+        from wrinklewave.report.run import compare_with_paper, present
+
+        run = _run(case, place, where, resume=resume, overwrite=overwrite)
+        summaries: dict[str, dict[str, Any]] = {case.substrate.bulk_response: run.summary}
+        if all_bulk:
+            summaries = _other_bulk_choices(run, where, resume=resume)
+        rows = compare_with_paper(run, summaries)
+        simulated = time.perf_counter()
+        try:
+            with console().status("figures and report"):
+                present(run, rows, helper)
+        except KeyboardInterrupt as interrupt:
+            raise _interrupted("while the report was written", folder) from interrupt
     place.close(run)
     if all_bulk:
-        out.print(comparison_table(rows))
+        console().print(comparison_table(rows))
     _describe(run)
     end = time.perf_counter()
     print(
@@ -146,6 +127,32 @@ def run_and_present(
     missing = [choice for choice in BULK_CHOICES if all_bulk and choice not in summaries]
     if missing:
         raise _interrupted(f"before {' and '.join(missing)}", folder, "--all-bulk")
+
+
+def _run(case: Case, place: RunFolder, where: dict[str, Any], *, resume: bool, overwrite: bool) -> Run:
+    from wrinklewave.cli.progress import STEPPING, shown_progress
+    from wrinklewave.experiments.interruption import Outcome
+    from wrinklewave.experiments.simulate import simulate as run_case
+
+    options = where | {"resume": resume, "overwrite": overwrite, "keep_checkpoint": True}
+    try:
+        with shown_progress(case.name, STEPPING) as progress:
+            run = run_case(case, out=place.path, **options, progress=progress)
+    except KeyboardInterrupt as interrupt:
+        if not place.checkpoint.exists():
+            raise
+        raise _interrupted("before all was written", place.path) from interrupt
+    if run.outcome is not Outcome.FINISHED:
+        raise _interrupted(f"at {1e3 * run.summary['simulated_time_s']:g} ms", place.path)
+    return run
+
+
+def _other_bulk_choices(run: Run, where: dict[str, Any], *, resume: bool) -> dict[str, dict[str, Any]]:
+    from wrinklewave.cli.progress import STEPPING, shown_progress
+    from wrinklewave.experiments.bulk_choices import other_bulk_choices
+
+    with shown_progress(f"{run.case.name}, other bulk responses", STEPPING) as progress:
+        return other_bulk_choices(run, **where, resume=resume, progress=lambda choice, state: progress(state))
 
 
 def _interrupted(where: str, folder: Path, *options: str) -> typer.Exit:

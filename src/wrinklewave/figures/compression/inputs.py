@@ -32,4 +32,6 @@ class CompressionInputs:
         return np.linspace(0.0, self.largest_strain, 800)
 
 
-COMPRESSION_FIGURES: Registry[CompressionInputs] = Registry()
+COMPRESSION_FIGURES: Registry[CompressionInputs] = Registry(
+    "wrinklewave.figures.compression:COMPRESSION_FIGURES"
+)

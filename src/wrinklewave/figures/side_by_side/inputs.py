@@ -43,7 +43,7 @@ class ComparedInputs:
         ]
 
 
-COMPARISON_FIGURES: Registry[ComparedInputs] = Registry()
+COMPARISON_FIGURES: Registry[ComparedInputs] = Registry("wrinklewave.figures.side_by_side:COMPARISON_FIGURES")
 
 
 def compared_inputs(comparison: Comparison) -> ComparedInputs:
