@@ -138,6 +138,14 @@ def test_a_sample_at_rest_can_be_drawn(tmp_path: Path) -> None:
     assert {figures.FIGURES[name].number for name in files} == {"4C", "4D", "5A"}
 
 
+def test_moments_that_the_eye_could_not_part_are_one_line(inputs: figures.FigureInputs) -> None:
+    for separation, labels in ((1.001e-3, ["stop, separation"]), (1.3e-3, ["stop", "separation"])):
+        boundary = replace(inputs.analysis.boundary, stop_time=1e-3, separation_time=separation)
+        moved = replace(inputs, analysis=replace(inputs.analysis, boundary=boundary))
+        motion = figures.FIGURES["fig_2d_boundary_spectrum"].draw(moved).axes[0]
+        assert motion.get_legend_handles_labels()[1] == labels
+
+
 def test_importing_figures_does_not_import_matplotlib() -> None:
     code = "import sys, wrinklewave.figures; sys.exit('matplotlib' in sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -61,6 +61,14 @@ def test_the_files_fit_together(run: Path, tmp_path: Path, ending: str) -> None:
             assert below.mean() < 0.5 * image[:3, clear].mean()
 
 
+def test_a_frame_rate_against_the_camera_is_noted(run: Path, tmp_path: Path) -> None:
+    """A rate that is mistyped makes all speeds wrong by its factor."""
+    filmed = film_run(run, tmp_path / "v.tif", scale=2e3)
+    for rate, noted in (("50 kHz", False), ("50.001 kHz", False), ("5 kHz", True)):
+        with open_experiment(load_experiment(filmed.experiment, [f"video.frame_rate={rate}"])) as source:
+            assert any("the camera's own clock" in note for note in source.notes) is noted
+
+
 def test_a_compression_is_a_quasi_static_series(tmp_path: Path) -> None:
     surface.write(TravellingPulse(end_time=0.4e-3).surface(), tmp_path / "surface.nc")
     (tmp_path / "case.toml").write_text(load_case(EXAMPLES / "quasi_static_compression.toml").to_toml())

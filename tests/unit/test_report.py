@@ -47,6 +47,7 @@ def context(tmp_path: Path) -> ReportContext:
         outcome="ended at 5 ms",
         summary={
             "wavefront_speed_m_per_s": 61.234567,
+            "wavefront_speed_sigma_m_per_s": 0.6789,
             "wrinkle_speed_m_per_s": None,
             "outcome": "done",
             "ok": True,
@@ -81,7 +82,7 @@ def test_report_shows_what_it_was_given(context: ReportContext, tmp_path: Path) 
     for text in (
         "impact &lt;of a block&gt;",
         "a &amp; b",
-        "61.23",
+        "61.23 ± 0.68",
         "data:image/png;base64,iVBORyBub3Qg",
         "2 % of the",
     ):

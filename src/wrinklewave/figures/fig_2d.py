@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 SHOWN_BANDWIDTHS = 4.0
 SHOWN_IN_KHZ = 2000.0
+APART = 0.01
+"""Of the time shown: lines that are nearer to each other lie on each other."""
 
 
 @FIGURES.figure(
@@ -28,11 +30,8 @@ def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
     boundary = inputs.analysis.boundary
     drawing, (motion, spectrum) = new_figure(6.3, 2.6, columns=2)
     motion.plot(MILLI * inputs.subject.time, MILLI * boundary.displacement, color=BOUNDARY_COLOUR)
-    for moment, label in ((boundary.stop_time, "stop"), (boundary.separation_time, "separation")):
-        if np.isfinite(moment):
-            motion.axvline(
-                MILLI * moment, color="0.5", lw=0.8, ls=":" if label == "stop" else "--", label=label
-            )
+    for label, moment in _moments(inputs).items():
+        motion.axvline(MILLI * moment, color="0.5", lw=0.8, ls=":" if label == "stop" else "--", label=label)
     motion.ticklabel_format(axis="y", style="sci", scilimits=(-2, 3))
     motion.set(xlabel="time (ms)", ylabel="displacement of the end (mm)")
     if motion.get_legend_handles_labels()[1]:
@@ -48,3 +47,14 @@ def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
     spectrum.set(ylim=(0.0, 1.05), xlim=(0.0, scale * highest))
     spectrum.legend()
     return drawing
+
+
+def _moments(inputs: FigureInputs) -> dict[str, float]:
+    """When the striker stops and the end leaves it [s], where known; one line where the eye could not part two."""
+    boundary, time = inputs.analysis.boundary, inputs.subject.time
+    stop, separation = boundary.stop_time, boundary.separation_time
+    if abs(separation - stop) < APART * (time[-1] - time[0]):
+        return {"stop, separation": separation}
+    return {
+        label: moment for label, moment in (("stop", stop), ("separation", separation)) if np.isfinite(moment)
+    }

@@ -53,7 +53,7 @@ def energy_balance(inputs: FigureInputs) -> Figure:
         lw=0,
     )
     energies.plot(time, history["external_work_J_per_m"], color="black", lw=1.2, label="external work")
-    energies.set(ylabel="energy (J/m)", xlim=(time[0], time[-1]))
+    energies.set(ylabel="energy (J/m)", xlim=(0.0, time[-1]))
     energies.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
     largest = max(abs(history["external_work_J_per_m"]).max(), 1e-300)
     imbalance.plot(time, 1e6 * history["imbalance_J_per_m"] / largest, color="black", lw=1.0)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
-from wrinklewave.figures.style import RC
+from wrinklewave.figures.style import PNG, RC
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -109,8 +109,7 @@ class Registry(dict[str, FigureSpec[Inputs]], Generic[Inputs]):
         """Draw figures, by name, into PNG files."""
         import matplotlib
 
-        options: dict[str, Any] = {"pil_kwargs": {"compress_level": 1}}  # a third faster, a fifth larger
         for name, file in files.items():
             drawing = self[name].draw(inputs)
             with matplotlib.rc_context(RC):
-                drawing.savefig(file, **options)
+                drawing.savefig(file, **PNG)

@@ -20,6 +20,9 @@ from wrinklewave.imaging.frames import FrameError, FrameSource, Image, open_reco
 if TYPE_CHECKING:
     from wrinklewave.config.experiment import Experiment
 
+SAME_RATE = 0.01
+"""Frame rates that differ by less are one, rounded."""
+
 
 class PreparedSource(FrameSource):
     """The chosen frames and region of another source, turned so that x points right and y up.
@@ -135,7 +138,19 @@ def open_experiment(experiment: Experiment) -> PreparedSource:
             expected="fewer than the recording has",
             cure="lower it",
         )
+    prepared.notes += _clock_notes(source, video.frame_rate)
     return prepared
+
+
+def _clock_notes(source: FrameSource, given: float | None) -> tuple[str, ...]:
+    """What to know if the experiment file says another frame rate than the camera wrote down."""
+    own = source.frame_rate if source.clock == "camera" else None
+    if own is None or given is None or abs(given / own - 1) < SAME_RATE:
+        return ()
+    return (
+        f"video.frame_rate is {given:g} Hz, but the camera's own clock in the recording has {own:g} Hz: times and "
+        "speeds are those of the former; leave it out if the camera is right",
+    )
 
 
 @contextmanager

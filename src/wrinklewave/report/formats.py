@@ -59,10 +59,10 @@ def scale(name: str, largest: float | None) -> Scale:
     return Scale(_words(name), "")
 
 
-def shown(name: str, value: float | None) -> Shown:
-    """Label, digits and unit of a single result [SI]."""
+def shown(name: str, value: float | None, sigma: float | None = None) -> Shown:
+    """Label, digits and unit of a single result [SI], with its standard uncertainty if there is one."""
     found = scale(name, value)
-    return Shown(found.label, found.digits(value), found.unit)
+    return Shown(found.label, found.with_sigma(value, sigma), found.unit)
 
 
 def number(value: float | None) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from wrinklewave.experiments.run_folder import write_text
 from wrinklewave.figures import FIGURES, figure_inputs
 from wrinklewave.figures.detections import Detection, detections_figure, locking_figure
+from wrinklewave.figures.style import PNG
 from wrinklewave.imaging.prepared import open_experiment
 from wrinklewave.report.page import ReportContext, render
 
@@ -71,7 +72,7 @@ def present_measurement(measurement: Measurement, helper: Helper | None = None) 
 
 def _saved(path: Path, drawing: Figure, caption: str) -> dict[str, str]:
     """Write a picture, and return it as the templates take it."""
-    drawing.savefig(path, dpi=160)
+    drawing.savefig(path, dpi=160, **PNG)
     data = base64.b64encode(path.read_bytes()).decode("ascii")
     return {"name": path.stem, "number": "", "caption": caption, "data": data}
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from wrinklewave.analysis.summary import sigma_name
 from wrinklewave.experiments.paper_table import Row
 from wrinklewave.figures import FIGURES
 from wrinklewave.figures.registry import FigureSpec
@@ -83,7 +84,11 @@ def render(context: ReportContext, template: str = "report.html", **others: Any)
         .get_template(template)
         .render(
             context=context,
-            headline=[shown(name, numbers[name]) for name in HEADLINE if numbers.get(name) is not None],
+            headline=[
+                shown(name, numbers[name], numbers.get(sigma_name(name)))
+                for name in HEADLINE
+                if numbers.get(name) is not None
+            ],
             results=[shown(name, value) for name, value in numbers.items()],
             figures=[
                 picture(name, FIGURES[name].of({context.kind}), file)

@@ -22,6 +22,7 @@ def inspect(video: Recording, out: Folder = Path()) -> None:
     from rich.markup import escape
 
     from wrinklewave.figures.contact_sheet import contact_sheet
+    from wrinklewave.figures.style import PNG
     from wrinklewave.imaging.frames import open_recording
     from wrinklewave.imaging.inspection import facts, grey_warnings, histogram, suggested_experiment
 
@@ -30,7 +31,7 @@ def inspect(video: Recording, out: Folder = Path()) -> None:
     with open_recording(video.absolute()) as source:
         grey = histogram(source)
         sheet = out / f"{video.stem}.contact-sheet.png"
-        contact_sheet(source, grey).savefig(sheet)
+        contact_sheet(source, grey).savefig(sheet, **PNG)
         for name, value in facts(source, grey).items():
             screen.print(f"{name:14}{escape(value)}", highlight=False)
         for warning in (*source.notes, *grey_warnings(source, grey)):
