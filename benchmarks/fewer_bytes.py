@@ -1,7 +1,8 @@
 """What fewer bytes per update would gain, and what single precision costs: ``python -m benchmarks.fewer_bytes``.
 
-Variants of the yardstick in C, made by a flag or by replacing text in it, take turns on the same problem. Errors are
-those of the displacements after 1.5 ms of the paper's case, against the yardstick as it is, relative to the largest.
+Variants of the yardstick in C, made by a flag or by replacing text in it, take turns on the same problem, with the
+package's own step and what coordinates of every node make of it. Errors are those of the displacements after 1.5 ms of
+the paper's case, against the yardstick as it is, relative to the largest.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import argparse
 import ctypes
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from benchmarks import parts
 from benchmarks.c_version import FLAGS, LOOPS, SOURCE, WIDTHS
 from benchmarks.limits import best_rates
 from benchmarks.machine import keep, offer_to_keep
+from benchmarks.numba_version import NumbaVersion
 from benchmarks.problem import PLATE_SPEED, Problem, problem
 from wrinklewave.dynamics.step import update_factors
 
@@ -59,6 +61,22 @@ VARIANTS = {
     "memory of the Prony terms in float32": Variant(120, FLOAT_MEMORY, memory=np.float32),
     "all in float32": Variant(84, (("double", "float"), ("sqrt(", "sqrtf(")), SINGLE, np.float32, np.float32),
 }
+
+OWN = {
+    "own step": (168, {}),
+    "own step, heights of every node": (176, {"y": "Y"}),
+    "own step, coordinates of every node": (184, {"x": "X", "y": "Y"}),
+}
+"""Bytes moved per update by the package, and which coordinates it reads in place of those by column and row."""
+
+
+def own(start: Problem, coordinates: dict[str, str]) -> NumbaVersion:
+    """The package's step on a problem of its own."""
+    copy, a = start.copy(), start.model.arrays
+    arrays = copy.model.arrays._replace(
+        **{name: getattr(a, by_node) for name, by_node in coordinates.items()}
+    )
+    return NumbaVersion(replace(copy, model=replace(copy.model, arrays=arrays)))
 
 
 def compiled(variant: Variant, stem: Path) -> ctypes.CDLL:
@@ -133,6 +151,12 @@ def error(library: ctypes.CDLL, variant: Variant, exact: np.ndarray | None) -> t
     return u, 0.0 if exact is None else float(np.abs(u - exact).max() / np.abs(exact).max())
 
 
+def line(name: str, moved: int, rates: dict[int, dict[str, float]], base: str, error: str) -> str:
+    """A row of the table; gains are those over ``base``."""
+    gains = (f"{of_size[name] / 1e6:.0f} ({of_size[name] / of_size[base]:.2f})" for of_size in rates.values())
+    return f"| {name} | {moved} | {' | '.join(gains)} | {error} |"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, help="elements")
@@ -151,12 +175,14 @@ def main() -> None:
         for size in options.sizes:
             start = problem(size)
             runs = {name: Contender(libraries[name], v, start).advance for name, v in VARIANTS.items()}
+            runs |= {name: own(start, coordinates).advance for name, (_, coordinates) in OWN.items()}
             rates[size] = best_rates(runs, start.n_elements, 4)
     head = ("variant", "bytes", *(f"{size:,}" for size in options.sizes), "error")
     print("| " + " | ".join(head) + " |\n|" + " --- |" * len(head))
     for name, variant in VARIANTS.items():
-        gains = (f"{rates[s][name] / 1e6:.0f} ({rates[s][name] / rates[s]['as it is']:.2f})" for s in rates)
-        print(f"| {name} | {variant.bytes} | {' | '.join(gains)} | {errors[name]:.1e} |")
+        print(line(name, variant.bytes, rates, "as it is", f"{errors[name]:.1e}"))
+    for name, (moved, _) in OWN.items():
+        print(line(name, moved, rates, "own step", ""))
     keep({"rates": rates, "errors": errors}, options.out)
 
 
