@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from support.backend_models import BATCHES, EVENTS, MODELS, SHEAR, filmed
-from support.backend_runs import continued
+from support.backend_runs import CASES, continued
 from support.elsewhere import environment, run_elsewhere
 from wrinklewave.dynamics.boundary import CONTACT_LOSS, FORCE, FRICTION_LOSS, WORK, position
 
@@ -70,7 +70,7 @@ def test_devices_agree(runs, name):
         assert np.abs(cuda[key] - cpu[key]).max() <= agreement(name) * scale, key
 
 
-@pytest.mark.parametrize("name", [*MODELS, "from_case"])
+@pytest.mark.parametrize("name", [*MODELS, *(f"{case}_from_case" for case in CASES)])
 def test_histories_agree(runs, name):
     cpu, cuda = of(runs["cpu"], name), of(runs["cuda"], name)
     energy = max(cpu[key].max() for key in cpu if key.endswith("_J_per_m"))
