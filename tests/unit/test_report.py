@@ -15,7 +15,7 @@ from wrinklewave.experiments.compare import Quantity
 from wrinklewave.experiments.paper_table import paper_table
 from wrinklewave.report import ReportContext, summary_table, write
 from wrinklewave.report.formats import number, shown
-from wrinklewave.report.page import render
+from wrinklewave.report.page import headline, render
 from wrinklewave.report.side_by_side import table_rows
 
 VOID = {"meta", "img", "br", "link", "input", "hr"}
@@ -148,6 +148,20 @@ def test_times_of_a_long_run_are_seconds_throughout(context: ReportContext) -> N
 def test_numbers_have_four_digits() -> None:
     assert number(123456.0) == "1.235e+05"
     assert number(0.0) == "0"
+
+
+@pytest.mark.parametrize(
+    ("name", "sigma"),
+    [
+        ("wavefront_speed_m_per_s", "wavefront_speed_sigma_m_per_s"),
+        ("critical_wavelength_m", "critical_wavelength_sigma_m"),
+        ("second_critical_strain", "second_critical_strain_sigma"),
+    ],
+)
+def test_results_stand_beside_their_uncertainties(name: str, sigma: str) -> None:
+    found = headline({name: 2e-3, sigma: 1e-5, "wavelength_m": None}, (name, "wavelength_m", "elements"))
+    assert [item.value for item in found] == [shown(name, 2e-3, 1e-5).value]
+    assert "±" in found[0].value
 
 
 def test_summary_table_prints_chosen_results() -> None:

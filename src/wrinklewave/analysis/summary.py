@@ -120,5 +120,7 @@ def _median(values: Array) -> float:
 
 
 def sigma_name(name: str) -> str:
-    """``wavefront_speed_m_per_s`` has its standard uncertainty in ``wavefront_speed_sigma_m_per_s``."""
-    return name.removesuffix("_m_per_s") + "_sigma_m_per_s"
+    """``wavefront_speed_m_per_s`` has its standard uncertainty in ``wavefront_speed_sigma_m_per_s``,
+    ``critical_strain`` in ``critical_strain_sigma``."""
+    ending = next((ending for ending in ("_m_per_s", "_m") if name.endswith(ending)), "")
+    return f"{name.removesuffix(ending)}_sigma{ending}"

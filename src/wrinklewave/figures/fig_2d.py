@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.figures.inputs import FIGURES, FigureInputs
-from wrinklewave.figures.style import BOUNDARY_COLOUR, MILLI, new_figure
+from wrinklewave.figures.style import BOUNDARY_COLOUR, MILLI, Margins, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,7 +28,7 @@ APART = 0.01
 def boundary_spectrum_figure(inputs: FigureInputs) -> Figure:
     """Displacement against time, and its spectrum."""
     boundary = inputs.analysis.boundary
-    drawing, (motion, spectrum) = new_figure(6.3, 2.6, columns=2)
+    drawing, (motion, spectrum) = new_figure(6.3, 2.7, columns=2, margins=Margins(top=0.25))
     motion.plot(MILLI * inputs.subject.time, MILLI * boundary.displacement, color=BOUNDARY_COLOUR)
     for label, moment in _moments(inputs).items():
         motion.axvline(MILLI * moment, color="0.5", lw=0.8, ls=":" if label == "stop" else "--", label=label)

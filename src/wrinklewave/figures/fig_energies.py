@@ -41,7 +41,7 @@ def energy_balance(inputs: FigureInputs) -> Figure:
         rows=2,
         sharex=True,
         height_ratios=(3, 1),
-        margins=Margins(left=0.75, right=1.75, between_rows=0.3),
+        margins=Margins(left=0.75, right=1.75, top=0.25, between_rows=0.3),
     )
     names = [name for name in SHARES if name in history]
     energies.stackplot(

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from wrinklewave.figures.inputs import FIGURES, FigureInputs
-from wrinklewave.figures.style import COLOURS, MILLI, Margins, new_figure, panel_letter
+from wrinklewave.figures.style import COLOURS, MILLI, Margins, legend_above, new_figure, panel_letter
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -25,7 +25,7 @@ def curvature_figure(inputs: FigureInputs) -> Figure:
     """Surface profiles, and both strains against time."""
     subject, pulse = inputs.subject, inputs.analysis.pulse
     drawing, (profiles, strains) = new_figure(
-        6.3, 5.2, rows=2, margins=Margins(left=0.75, top=0.3, between_rows=0.75)
+        6.3, 5.3, rows=2, margins=Margins(left=0.75, top=0.42, between_rows=0.75)
     )
     for colour, wanted in zip(COLOURS, inputs.times, strict=False):
         row = int(np.abs(subject.time - wanted).argmin())
@@ -35,8 +35,7 @@ def curvature_figure(inputs: FigureInputs) -> Figure:
         if np.isfinite(end) and known.size:
             profiles.plot(MILLI * end, MILLI * pulse.displacement[row, known[0]], "o", ms=4, color=colour)
     profiles.set(xlabel="position $x$ (mm)", ylabel="height over rest (mm)")
-    profiles.margins(y=0.3)
-    profiles.legend(loc="upper right")
+    legend_above(profiles)
     time, straight = MILLI * subject.time, inputs.analysis.boundary.displacement / subject.length
     strains.plot(time, pulse.arc_strain, color="black", label="along the arc")
     strains.plot(time, straight, "--", color=COLOURS[1], label="from the end's motion")

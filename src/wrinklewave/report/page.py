@@ -15,7 +15,7 @@ from wrinklewave.experiments.paper_table import Row
 from wrinklewave.figures import FIGURES
 from wrinklewave.figures.registry import FigureSpec
 from wrinklewave.laboratory_frame import Array
-from wrinklewave.report.formats import number, scale, shown
+from wrinklewave.report.formats import Shown, number, scale, shown
 from wrinklewave.report.tables import bulk_choices, remarks, tally
 
 if TYPE_CHECKING:
@@ -84,11 +84,7 @@ def render(context: ReportContext, template: str = "report.html", **others: Any)
         .get_template(template)
         .render(
             context=context,
-            headline=[
-                shown(name, numbers[name], numbers.get(sigma_name(name)))
-                for name in HEADLINE
-                if numbers.get(name) is not None
-            ],
+            headline=headline(numbers, HEADLINE),
             results=[shown(name, value) for name, value in numbers.items()],
             figures=[
                 picture(name, FIGURES[name].of({context.kind}), file)
@@ -128,6 +124,15 @@ def _comparison(rows: Sequence[Row]) -> dict[str, Any]:
 
 def _is_number(value: object) -> bool:
     return value is None or (isinstance(value, int | float) and not isinstance(value, bool))
+
+
+def headline(numbers: Mapping[str, float | None], names: Sequence[str]) -> list[Shown]:
+    """Chosen results with their standard uncertainties, where they are known."""
+    return [
+        shown(name, numbers[name], numbers.get(sigma_name(name)))
+        for name in names
+        if numbers.get(name) is not None
+    ]
 
 
 def picture(name: str, spec: FigureSpec[Any], file: Path) -> dict[str, str]:

@@ -15,7 +15,7 @@ from wrinklewave.figures.detections import Detection
 from wrinklewave.imaging.frames import Image
 from wrinklewave.imaging.prepared import open_experiment
 from wrinklewave.report.formats import shown
-from wrinklewave.report.page import ReportContext, environment, picture
+from wrinklewave.report.page import ReportContext, environment, headline, picture
 
 if TYPE_CHECKING:
     from wrinklewave.experiments.measure_quasi_static import MeasuredSeries, QuasiStaticMeasurement
@@ -24,9 +24,7 @@ if TYPE_CHECKING:
 
 HEADLINE = (
     "critical_strain",
-    "critical_strain_sigma",
     "critical_wavelength_m",
-    "critical_wavelength_sigma_m",
     "critical_wavelength_compressed_m",
     "initial_amplitude_m",
     "strain_max",
@@ -114,7 +112,7 @@ def quasi_static_page(context: ReportContext) -> str:
         .get_template("report.html")
         .render(
             context=context,
-            headline=[shown(name, numbers[name]) for name in HEADLINE if numbers.get(name) is not None],
+            headline=headline(numbers, HEADLINE),
             results=[shown(name, value) for name, value in numbers.items()],
             figures=[
                 picture(name, COMPRESSION_FIGURES[name], file) for name, file in context.figures.items()
