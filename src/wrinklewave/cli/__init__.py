@@ -9,6 +9,7 @@ traceback.
 
 from __future__ import annotations
 
+import atexit
 import gc
 import sys
 from collections.abc import Callable
@@ -41,6 +42,9 @@ FREE_SOME = "  to mend:  free some, then go on with wrinklewave restart DIR, or 
 def main() -> None:
     """Entry point: run the verb; return 2 for a mistake in the input, 1 for a failure, 130 after Ctrl-C."""
     gc.set_threshold(COLLECTED_AFTER)
+    atexit.register(
+        gc.freeze
+    )  # or the end of the process looks through all of it once more, for half a second
     try:
         application()()
     except WrinklewaveError as error:
