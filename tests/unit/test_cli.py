@@ -233,6 +233,14 @@ def test_what_takes_long_to_begin_says_why(
     assert capsys.readouterr().err == "slow: compiling\nquick: half done\n"
 
 
+def test_values_of_a_sweep_are_printed_as_they_are(capsys: pytest.CaptureFixture[str]) -> None:
+    from wrinklewave.cli.verbs.sweep import _say
+    from wrinklewave.experiments.sweep import SweepProgress
+
+    _say(SweepProgress(1, 2, "case.name=[/red]", {"outcome": "finished"}, 12.0), lambda: None)
+    assert capsys.readouterr().out == "1 of 2, 12 runs per minute: case.name=[/red]: finished\n"
+
+
 def test_doctor(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     code, out, _ = run(capsys, monkeypatch, "doctor")
     assert code == 0

@@ -52,7 +52,6 @@ def sweep(
     overwrite: Overwrite = False,
 ) -> None:
     """Simulate every combination of values; write their results as one dataset and one table."""
-    from wrinklewave.cli.console import console
     from wrinklewave.cli.progress import told_if_slow
     from wrinklewave.experiments.interruption import Outcome
     from wrinklewave.experiments.sweep import sweep as run_sweep
@@ -72,17 +71,14 @@ def sweep(
             overwrite=overwrite,
             progress=lambda state: _say(state, begun),
         )
-    out_ = console()
     if outcome is not Outcome.FINISHED:
-        out_.print(outcome.value)
+        print(outcome.value)
         raise typer.Exit(130)
     failed = int((table["outcome"] != "finished").sum())
     print(f"{table['outcome'].size} runs, {failed} of them failed; look at {folder / 'sweep.csv'}")
 
 
 def _say(state: SweepProgress, begun: Callable[[], None]) -> None:
-    from wrinklewave.cli.console import console
-
     begun()
     where = f"{state.done} of {state.total}, {state.runs_per_minute:.3g} runs per minute"
-    console().print(f"{where}: {state.name}: {state.summary['outcome']}", highlight=False)
+    print(f"{where}: {state.name}: {state.summary['outcome']}", flush=True)
