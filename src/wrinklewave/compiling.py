@@ -7,18 +7,18 @@ compiled where it is called.
 from __future__ import annotations
 
 import importlib
-import os
-import pickle
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import parent_process
-from typing import Any
+from typing import Any, cast
 
 import numba
 
 from wrinklewave._jit import calls_kernels_of_others
+from wrinklewave.processes import ProcessBeside, handed_over, usable_cores
+
+_Wanted = list[tuple[str, str, tuple[Any, ...]]]
+"""Module, name and types of the arguments of kernels."""
 
 _HELPER = "from wrinklewave.compiling import compile_wanted; compile_wanted()"
 
@@ -34,21 +34,13 @@ def compiled_beside(*calls: tuple[Any, tuple[Any, ...]]) -> Iterator[bool]:
     if not wanted:
         yield False
         return
-    # a session of its own: an interrupt at the terminal is for this process, which ends the other
-    helper = subprocess.Popen(
-        [sys.executable, "-P", "-c", _HELPER],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-        start_new_session=True,
-    )
+    helper = ProcessBeside(_HELPER)
     try:
-        _hand_over(helper, pickle.dumps(wanted))
+        helper.hand_over(wanted)
         yield True
-        helper.wait()
+        helper.has_done_it()
     finally:
-        helper.kill()
-        helper.wait()
+        helper.end()
 
 
 def _can_help() -> bool:
@@ -58,12 +50,11 @@ def _can_help() -> bool:
 
 def _core_is_free() -> bool:
     """Whether there is a second core; processes that others start, as sweeps do, share the cores already."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return cores > 1 and parent_process() is None
+    return usable_cores() > 1 and parent_process() is None
 
 
-def _missing(calls: tuple[tuple[Any, tuple[Any, ...]], ...]) -> list[tuple[str, str, tuple[Any, ...]]]:
-    """Module, name and types of the arguments of the kernels that are not in the cache."""
+def _missing(calls: tuple[tuple[Any, tuple[Any, ...]], ...]) -> _Wanted:
+    """Those of the kernels that are not in the cache."""
     typed = [(kernel, tuple(numba.typeof(argument) for argument in given)) for kernel, given in calls]
     return [
         (kernel.__module__, kernel.__name__, types) for kernel, types in typed if not is_kept(kernel, types)
@@ -76,16 +67,7 @@ def is_kept(kernel: Any, types: tuple[Any, ...]) -> bool:
     return key in kernel._cache._cache_file._load_index()
 
 
-def _hand_over(helper: subprocess.Popen[bytes], wanted: bytes) -> None:
-    assert helper.stdin is not None
-    try:
-        helper.stdin.write(wanted)
-        helper.stdin.close()
-    except BrokenPipeError:  # it did not start
-        pass
-
-
 def compile_wanted() -> None:
     """Compile what is asked for on the standard input."""
-    for module, name, types in pickle.load(sys.stdin.buffer):
+    for module, name, types in cast(_Wanted, handed_over()):
         getattr(importlib.import_module(module), name).compile(types)

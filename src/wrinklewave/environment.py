@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from wrinklewave.errors import InputError
+from wrinklewave.processes import usable_cores
 
 if TYPE_CHECKING:
     from wrinklewave.dynamics.backends import Device
@@ -100,9 +101,7 @@ def version_of(package: str) -> str:
 
 def processor() -> Processor:
     """Return the processor that runs this process."""
-    cores = os.cpu_count() or 1
-    usable = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else cores
-    return Processor(_processor_name(), cores, usable, _memory())
+    return Processor(_processor_name(), os.cpu_count() or 1, usable_cores(), _memory())
 
 
 def gpus() -> list[Gpu] | str:

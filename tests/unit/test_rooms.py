@@ -14,6 +14,7 @@ ROOMS = (
         "errors",
         "_version",
         "_jit",
+        "processes",
         "compiling",
         "units",
         "config",
