@@ -182,6 +182,15 @@ def test_every_figure_is_drawn_without_material_points_or_wrinkles(tmp_path: Pat
     assert all(file.stat().st_size > 10_000 for file in files.values())
 
 
+def test_names_are_written_as_they_are(tmp_path: Path) -> None:
+    """To matplotlib a pair of dollars is a formula, and a label that begins with a low line is none."""
+    comparison = compare({"$\\frac$": made(), "_b": made()}, recorded_analysis([made().attrs]))
+    inputs = compared_inputs(comparison)
+    assert len(COMPARISON_FIGURES.write(tmp_path, inputs, kinds={"measurement"})) == len(COMPARISON_FIGURES)
+    curves = COMPARISON_FIGURES["side_2d_boundary"].draw(inputs).axes[0]
+    assert curves.get_legend_handles_labels()[1] == [r"\$\frac\$", " _b"]
+
+
 def test_compare_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     from wrinklewave.cli.verbs.compare import compare as verb
 

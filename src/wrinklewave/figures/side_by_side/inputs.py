@@ -11,7 +11,7 @@ from wrinklewave.figures.inputs import FigureInputs
 from wrinklewave.figures.registry import Registry
 
 if TYPE_CHECKING:
-    from wrinklewave.experiments.compare import Comparison
+    from wrinklewave.experiments.compare import Agreement, Comparison
 
 LINE_STYLES = ("-", "--", ":", "-.")
 SHARES_OF_TIME = (0.25, 0.5, 0.75)
@@ -23,7 +23,7 @@ class ComparedInputs:
 
     Attributes:
         comparison: as computed.
-        motions: by name, the reference first.
+        motions: by name as a figure writes it, the reference first.
     """
 
     comparison: Comparison
@@ -35,12 +35,22 @@ class ComparedInputs:
         return next(iter(self.motions.values()))
 
     @property
+    def agreements(self) -> dict[str, Agreement]:
+        """Of all but the reference with it, by name as in ``motions``."""
+        return {as_written(name): agreement for name, agreement in self.comparison.agreements.items()}
+
+    @property
     def styled(self) -> list[tuple[str, FigureInputs, str]]:
         """Name, surface motion and line style of each."""
         return [
             (name, motion, LINE_STYLES[number % len(LINE_STYLES)])
             for number, (name, motion) in enumerate(self.motions.items())
         ]
+
+
+def as_written(name: str) -> str:
+    """A name as matplotlib writes it: to it, dollars mark formulas, and a label that begins with a low line is none."""
+    return f"{' ' * name.startswith('_')}{name}".replace("$", r"\$")
 
 
 COMPARISON_FIGURES: Registry[ComparedInputs] = Registry("wrinklewave.figures.side_by_side:COMPARISON_FIGURES")
@@ -56,7 +66,7 @@ def compared_inputs(comparison: Comparison) -> ComparedInputs:
     return ComparedInputs(
         comparison,
         {
-            name: FigureInputs(motion.subject, motion.analysis, positions, times)
+            as_written(name): FigureInputs(motion.subject, motion.analysis, positions, times)
             for name, motion in comparison.motions.items()
         },
     )

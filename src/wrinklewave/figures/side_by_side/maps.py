@@ -83,7 +83,7 @@ def wrinkle_maps(inputs: ComparedInputs) -> Figure:
 def misfit_maps(inputs: ComparedInputs) -> Figure:
     """Maps of the difference from the first, with one colour scale."""
     comparison = inputs.comparison
-    grid, agreements = comparison.grid, comparison.agreements
+    grid, agreements = comparison.grid, inputs.agreements
     scale = 1e6 * max(max(np.nanpercentile(np.abs(a.misfit), 99.0) for a in agreements.values()), 1e-9)
     drawing, panels = _panels(len(agreements), DIFFERENCE_MARGINS)
     for axes, (name, agreement) in zip(panels, agreements.items(), strict=True):

@@ -41,7 +41,7 @@ def amplitude_and_wavelength(inputs: ComparedInputs) -> Figure:
         colour = COLOURS[number % len(COLOURS)]
         panels[0, 0].plot(time, 1e6 * wrinkles.amplitude, style, color=colour, label=name)
         panels[0, 1].plot(time, MILLI * wrinkles.spectra.peak, style, color=colour)
-        agreement = inputs.comparison.agreements.get(name)
+        agreement = inputs.agreements.get(name)
         if agreement is not None:
             common = MILLI * inputs.comparison.grid.time
             for axes, ratio in zip(panels[1], (agreement.amplitude, agreement.wavelength), strict=True):
