@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from enum import Enum
 from types import FrameType
 
@@ -16,6 +17,9 @@ class Outcome(Enum):
     FINISHED = "finished"
     INTERRUPTED = "interrupted; go on with --resume"
     FAILED = "failed"
+
+
+STOPPING = b"\nstopping where it can go on later; Ctrl-C now stops at once\n"
 
 
 @contextmanager
@@ -29,6 +33,8 @@ def interruptible() -> Iterator[Callable[[], bool]]:
     def note(signum: int, frame: FrameType | None) -> None:
         nonlocal wished
         wished = True
+        with suppress(OSError):  # print, which tells progress, may be at work right now
+            os.write(2, STOPPING)
         signal.signal(signal.SIGINT, signal.default_int_handler)
 
     old = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}

@@ -45,7 +45,7 @@ class MeasurementFolder:
         """
         if (path / "case.toml").exists():
             raise InputError("holds a run", file=path, cure="choose another folder with --out")
-        claim_folder(path, "experiment.toml", "a measurement", may_exist=resume or overwrite)
+        claim_folder(path, "experiment.toml", "a measurement", resume=resume, overwrite=overwrite)
         folder, text = cls(path), experiment.to_toml()
         if not resume:
             folder._clear()

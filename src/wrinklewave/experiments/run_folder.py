@@ -59,7 +59,7 @@ class RunFolder:
                 another case is to be resumed.
         """
         folder = cls(path)
-        claim_folder(path, "case.toml", "a run", may_exist=resume or overwrite)
+        claim_folder(path, "case.toml", "a run", resume=resume, overwrite=overwrite)
         if resume:
             folder.demand(case)
         else:
@@ -151,27 +151,44 @@ def _unlike(one: Any, other: Any) -> Iterator[tuple[str, ...]]:
         yield from ((key, *rest) for rest in _unlike(one.get(key), other.get(key)))
 
 
-def claim_folder(path: Path, marker: str, what: str, *, may_exist: bool) -> None:
+def claim_folder(path: Path, marker: str, what: str, *, resume: bool, overwrite: bool) -> None:
     """Make a folder for results unless it holds other ones.
 
     Args:
         path: of the folder.
         marker: file that says that ``what`` lies there already.
         what: is to be put there, in words.
-        may_exist: whether it may be there already.
+        resume: whether it may be there already, to be gone on with.
+        overwrite: whether it may be there already, to be replaced.
 
     Raises:
-        InputError: if it is there and must not be, or if ``path`` is a file.
+        InputError: if it is there and must not be, if ``path`` is a file, or if both is wanted.
     """
+    demand_one_wish(path, resume=resume, overwrite=overwrite)
     if path.exists() and not path.is_dir():
         raise InputError("is a file", file=path, expected="a folder for the results")
-    if (path / marker).exists() and not may_exist:
+    if (path / marker).exists() and not (resume or overwrite):
         raise InputError(
             f"holds {what} already",
             file=path,
             cure="--resume goes on with it, --overwrite replaces it, --out takes another folder",
         )
     path.mkdir(parents=True, exist_ok=True)
+
+
+def demand_one_wish(path: Path, *, resume: bool, overwrite: bool) -> None:
+    """See that results are not both to be gone on with and to be replaced.
+
+    Raises:
+        InputError: if they are.
+    """
+    if resume and overwrite:
+        raise InputError(
+            "is to be gone on with and to be replaced",
+            file=path,
+            expected="--resume or --overwrite, not both",
+            cure="--resume keeps what is there, --overwrite begins anew",
+        )
 
 
 def write_text(path: Path, text: str) -> None:

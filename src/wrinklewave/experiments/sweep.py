@@ -17,6 +17,7 @@ from wrinklewave.environment import choose_device, processor
 from wrinklewave.errors import InputError
 from wrinklewave.experiments.batch import batches, processes_at_once
 from wrinklewave.experiments.interruption import Outcome, interruptible
+from wrinklewave.experiments.run_folder import demand_one_wish
 from wrinklewave.experiments.sweep_table import write_tables
 from wrinklewave.experiments.sweep_workers import Workers, run_batch, run_member
 
@@ -172,6 +173,7 @@ def _prepare(members: Sequence[Member], out: Path, *, resume: bool, overwrite: b
     """See that the folder is free, or holds this very sweep."""
     if any((out / name).exists() for name in ("case.toml", "experiment.toml")):
         raise InputError("holds a run or a measurement", file=out, cure="choose another folder with --out")
+    demand_one_wish(out, resume=resume, overwrite=overwrite)
     earlier = sorted((out / "runs").glob("*/case.toml"))
     if earlier and not (resume or overwrite):
         cure = "--resume goes on with it, --overwrite replaces it, --out takes another folder"
