@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import time
+from collections import deque
 from dataclasses import dataclass
+from statistics import median_low
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,31 +35,37 @@ class Pace:
     """Whether to step on all threads or on one, whichever is faster at the time.
 
     Threads wait for each other at every step, so they are slow when another process takes their cores. Results do not
-    depend on their number, so it may change from one group of steps to the next. The slower choice is tried again
-    every :data:`RETRY` groups.
+    depend on their number, so it may change from one group of steps to the next. Each choice counts by the median of
+    its last :data:`MEMORY` groups: one group that was held up, as the first often is, says nothing. All choices are
+    tried :data:`TRIES` times, then the slower one again every :data:`RETRY` groups.
     """
 
+    TRIES = 3
     RETRY = 40
-    MEMORY = 0.8
+    MEMORY = 5
 
     def __init__(self, choices: list[Arrays]) -> None:
         self._choices = choices
-        self._seconds = [0.0] * len(choices)  # per step, smoothed; 0 before the first try
-        self._tries = 0
+        self._seconds: list[deque[float]] = [deque(maxlen=self.MEMORY) for _ in choices]  # per step
+        self._groups = 0
         self._current = 0
 
     def choose(self) -> Arrays:
         """The arrays, shared out to the number of threads that the next group should have."""
-        self._tries += 1
-        fastest = self._seconds.index(min(self._seconds))  # one that was never tried is the fastest
-        slower = (fastest + 1) % len(self._choices)
-        self._current = slower if self._tries % self.RETRY == 0 else fastest
+        self._groups += 1
+        tries = [len(seconds) for seconds in self._seconds]
+        if min(tries) < self.TRIES:
+            self._current = tries.index(min(tries))
+        else:
+            medians = [median_low(seconds) for seconds in self._seconds]
+            fastest = medians.index(min(medians))
+            slower = (fastest + 1) % len(self._choices)
+            self._current = slower if self._groups % self.RETRY == 0 else fastest
         return self._choices[self._current]
 
     def note(self, seconds: float) -> None:
         """Take down what a step of the last group took."""
-        old = self._seconds[self._current]
-        self._seconds[self._current] = self.MEMORY * old + (1 - self.MEMORY) * seconds if old else seconds
+        self._seconds[self._current].append(seconds)
 
 
 @dataclass(frozen=True, eq=False)
