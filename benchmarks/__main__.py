@@ -106,6 +106,7 @@ def line(n_elements: int, rates: dict[str, float], bandwidth: float) -> str:
         f"{one / step:.2f}",
         f"{two / 1e6:.1f}",
         f"{two / one:.2f}",
+        f"{two / step:.2f}",
         f"{one * TRAFFIC_BYTES / bandwidth:.2f}",
         f"{rates['NumPy step'] / 1e6:.1f}",
     )
@@ -113,7 +114,7 @@ def line(n_elements: int, rates: dict[str, float], bandwidth: float) -> str:
 
 
 COLUMNS = (
-    *("elements", "kernel", "of C", "step, 1 thread", "of C", "step, 2 threads", "of 1 thread"),
+    *("elements", "kernel", "of C", "step, 1 thread", "of C", "step, 2 threads", "of 1 thread", "of C"),
     *("of copy bandwidth", "NumPy step"),
 )
 HEADING = "| " + " | ".join(COLUMNS) + " |\n|" + " --- |" * len(COLUMNS)
@@ -141,7 +142,7 @@ def main() -> None:
             f"{STATE_BYTES} bytes kept per element, {TRAFFIC_BYTES} moved per update\n\n{HEADING}", flush=True
         )
         for size in QUICK_SIZES if options.quick else SIZES:
-            rates[size] = measure(size, Path(scratch), threads, 3 if options.quick else 6)
+            rates[size] = measure(size, Path(scratch), threads, 3 if options.quick else 12)
             print(line(size, rates[size], bandwidth), flush=True)
     found = {"differences_after_50_steps": differences, "copy_bytes_per_s": bandwidth, "rates": rates}
     keep(found, options.out)

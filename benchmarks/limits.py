@@ -32,7 +32,7 @@ READ, WRITTEN = ("x", "y", "inverse_mass"), ("u", "w", "vx", "vy")
 
 COLUMNS = (
     *("elements", "state", "copy, 1 thread", "step, 1 thread", "of copy", "of arithmetic", "of C"),
-    *("copy, 2 threads", "step, 2 threads", "of copy", "of 1 thread"),
+    *("copy, 2 threads", "step, 2 threads", "of copy", "of 1 thread", "of C"),
 )
 HEADING = "| " + " | ".join(COLUMNS) + " |\n|" + " --- |" * len(COLUMNS)
 
@@ -92,6 +92,7 @@ def line(found: dict[str, float], moved: float, operations: float, arithmetic: f
         f"{two / 1e6:.0f}",
         f"{two * moved / copy_2:.2f}",
         f"{two / one:.2f}",
+        f"{two / c:.2f}",
     )
     return "| " + " | ".join(cells) + " |"
 
@@ -99,7 +100,7 @@ def line(found: dict[str, float], moved: float, operations: float, arithmetic: f
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--sizes", type=float, nargs="+", default=SIZES, help="elements")
-    parser.add_argument("--repetitions", type=int, default=4)
+    parser.add_argument("--repetitions", type=int, default=8)
     offer_to_keep(parser)
     options = parser.parse_args()
     threads = min(2, processor().usable)
