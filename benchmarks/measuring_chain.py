@@ -110,6 +110,7 @@ def moment_lines(truth: xr.Dataset, summary: dict[str, Any]) -> list[Line]:
         end,
         nothing,
         truth["boundary_row"].values,
+        nothing,
         striker,
         nothing,
         end - striker,

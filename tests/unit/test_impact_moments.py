@@ -28,6 +28,7 @@ def impact(noise: float = 0.03, *, recoil: float = 60e3) -> EndTrack:
         column=end + random.normal(0.0, noise, time.size),
         sigma=np.full(time.size, noise),
         row=np.zeros(time.size),
+        row_sigma=np.zeros(time.size),
         striker=np.where(seen, plate + random.normal(0.0, noise, time.size), np.nan),
         striker_sigma=np.where(seen, noise, np.nan),
         gap=np.where(seen, gap, np.nan),

@@ -66,7 +66,7 @@ class FrameBlock:
     Attributes:
         frame: which frames these are, unreadable ones left out.
         rows, sigma, valid: the surface, [..., n_columns], as in ``Edge``.
-        end: fields of ``StruckEnd``, [..., 16].
+        end: fields of ``StruckEnd``, [..., 17].
         wires: fields of ``WireSightings``, [..., n_seen, 5], NaN after the last.
         locking: sums over the block's frames, [3, n_bins], as in ``PixelLocking``.
         contrast, noise: of each frame.

@@ -66,7 +66,7 @@ class EndTrack:
     Attributes:
         time: [s].
         column, sigma: of the struck end at the surface, and its standard uncertainty; NaN where not seen.
-        row: of the surface there, to a pixel or so.
+        row, row_sigma: of the surface there, and its standard uncertainty.
         striker, striker_sigma: the striker's face; NaN where there is none in sight.
         gap, gap_sigma: between the two, zero where the striker touches; NaN where there is none in sight.
         touching: 1 where the striker touches, 0 where it does not, NaN where it is out of sight.
@@ -77,6 +77,7 @@ class EndTrack:
     column: Floats
     sigma: Floats
     row: Floats
+    row_sigma: Floats
     striker: Floats
     striker_sigma: Floats
     gap: Floats

@@ -26,11 +26,6 @@ from wrinklewave.surface import SurfaceFile
 WIDEST_BRIDGE = 2.5
 """Gaps in the surface are bridged up to so many resolutions, and NaN beyond."""
 FEWEST_COLUMNS = 4
-CORNER_COLUMNS = 12
-"""Columns of the surface from which it is continued to the corner of the struck end."""
-CORNER_FRAMES = 3
-CORNER_ROW = 1.0
-"""Standard uncertainty of the corner's row [px]: in a tilted image it moves the end along the sample."""
 
 
 @dataclass(frozen=True)
@@ -62,35 +57,12 @@ def frame_series(blocks: Iterable[FrameBlock]) -> FrameSeries:
     locking = PixelLocking.none()
     for block in blocks:
         seen = block.valid.sum(axis=1) / np.maximum(np.isfinite(block.rows).sum(axis=1), 1)
-        kept.append((block.frame, _with_corners(block), block.contrast, block.noise, seen))
+        kept.append((block.frame, block.end, block.contrast, block.noise, seen))
         sightings += block.sightings
         locking = locking + block.pixel_locking
     frame, end, contrast, noise, seen = (np.concatenate(parts) for parts in zip(*kept, strict=True))
     fields = dict(zip(StruckEnd._fields, end.T, strict=True))
-    fields["corner_row"] = _smooth_rows(fields["corner_row"])
     return FrameSeries(frame, fields, sightings, locking, contrast, noise, seen)
-
-
-def _with_corners(block: FrameBlock) -> Floats:
-    """``block.end`` with the row of the corner where a cubic through the surface's first columns leads to it."""
-    end = block.end.copy()
-    column, touch, corner = (StruckEnd._fields.index(name) for name in ("column", "touch", "corner_row"))
-    for one, rows, valid in zip(end, block.rows, block.valid, strict=True):
-        at = one[column] if np.isfinite(one[column]) else one[touch]
-        known = np.flatnonzero(valid & (np.arange(valid.size) > at))[:CORNER_COLUMNS]
-        if known.size == CORNER_COLUMNS and known[0] - at < CORNER_COLUMNS:
-            one[corner] = np.polyfit(known - at, rows[known], 3)[-1]
-    return end
-
-
-def _smooth_rows(rows: Floats) -> Floats:
-    """Rows with less noise: parabolas through the frames within ``CORNER_FRAMES`` of each."""
-    known, smooth = np.flatnonzero(np.isfinite(rows)), rows.copy()
-    for frame in known:
-        near = known[np.abs(known - frame) <= CORNER_FRAMES]
-        if near.size > 3:
-            smooth[frame] = np.polyfit(near - frame, rows[near], 2)[-1]
-    return smooth
 
 
 def end_track(series: FrameSeries, time: Floats, n_undeformed: int, appearance: Appearance) -> EndTrack:
@@ -118,6 +90,7 @@ def end_track(series: FrameSeries, time: Floats, n_undeformed: int, appearance: 
         column=column,
         sigma=sigma,
         row=end["corner_row"],
+        row_sigma=end["corner_sigma"],
         striker=np.where(touches, column, end["striker"] + slope * up_striker),
         striker_sigma=np.where(touches, sigma, np.hypot(end["striker_sigma"], slope_sigma * up_striker)),
         gap=np.where(touches, 0.0, end["gap"]),
@@ -202,12 +175,13 @@ def track_columns(
 ) -> dict[str, Floats]:
     """Struck end, striker and wires in every frame with their standard uncertainties, as columns of a table."""
     pixel = pixels.pixel_size
+    by_row = track.row_sigma * np.sin(pixels.tilt)  # of faces, which are followed to the row of the corner
     columns = {
         "time_s": time,
         "x_boundary_m": pixels.to_metres(track.column, track.row)[0],
-        "x_boundary_sigma_m": pixel * np.hypot(track.sigma, CORNER_ROW * np.sin(pixels.tilt)),
+        "x_boundary_sigma_m": pixel * np.hypot(track.sigma, by_row),
         "x_striker_m": pixels.to_metres(track.striker, track.row)[0],
-        "x_striker_sigma_m": pixel * track.striker_sigma,
+        "x_striker_sigma_m": pixel * np.hypot(track.striker_sigma, by_row),
         "striker_touches": track.touching,
     }
     if wires is not None:

@@ -27,6 +27,7 @@ _REACH = 4.0  # blurs that a step reaches to either side
 _LEVEL_COLUMNS = 14  # columns beyond, that tell the levels
 _LEDGE = 4.0  # rows by which the surface leaves the striker's top
 _LEAN = 0.02  # columns per row: how much a face may be inclined where that is not seen
+_ROUGH = 3.0  # px: standard uncertainty of the surface's coarse row beside the end
 _STRAIGHT = 4.0  # blurs: of a wider gap it is seen whether the faces are parallel
 
 
@@ -43,7 +44,7 @@ class StruckEnd(NamedTuple):
         gain: by how much chi squared is smaller with a gap than without.
         row: middle of the strips.
         striker_row: middle of those that show the striker.
-        corner_row: where the surface ends, roughly.
+        corner_row, corner_sigma: where the surface ends, and its standard uncertainty.
     """
 
     column: float
@@ -62,6 +63,7 @@ class StruckEnd(NamedTuple):
     row: float
     striker_row: float
     corner_row: float
+    corner_sigma: float
 
 
 class _View(NamedTuple):
@@ -92,14 +94,15 @@ def find_struck_end(image: Pixels, coarse: Floats, appearance: Appearance) -> St
     return StruckEnd(*_find(image, coarse, appearance.greys, appearance.strip_depth, view))
 
 
-_APART, _STRIKER, _GAP, _TOUCH, _GAIN, _ROW, _STRIKER_ROW, _CORNER_ROW = 0, 4, 6, 8, 12, 13, 14, 15
+_APART, _STRIKER, _GAP, _TOUCH, _GAIN = 0, 4, 6, 8, 12
+_ROW, _STRIKER_ROW, _CORNER_ROW, _CORNER_SIGMA = 13, 14, 15, 16
 """Where in the fields of ``StruckEnd`` something begins: four of the end apart and touching, two of striker and gap."""
 
 
 @allocating
 def _find(image: Pixels, coarse: Floats, greys: Greys, strip_depth: float, view: _View) -> Floats:
     """Fields of ``StruckEnd``."""
-    found = np.full(_CORNER_ROW + 1, np.nan)
+    found = np.full(_CORNER_SIGMA + 1, np.nan)
     n_columns = image.shape[1]
     top = greys.row + strip_depth + greys.slope * np.arange(n_columns)
     body = strip_shares(image, top, STRIP_ROWS, greys)
@@ -120,7 +123,8 @@ def _find(image: Pixels, coarse: Floats, greys: Greys, strip_depth: float, view:
     first, last = _window(face if in_sight else rough, rough, view.blur, n_columns)
     strips, rows = _strips(image, uppermost, n_rows, first, last, greys), n_rows * (np.arange(_STRIPS) - 1.5)
     found[_ROW] = uppermost + 0.5 * (_STRIPS * n_rows - 1)
-    found[_STRIKER_ROW], found[_CORNER_ROW] = found[_ROW], beside[0]
+    found[_STRIKER_ROW] = found[_ROW]
+    found[_CORNER_ROW], found[_CORNER_SIGMA] = beside[0], _ROUGH
     noise, reach = 1.0 / view.contrast_to_noise, _REACH * view.blur
     sigma, start = noise / np.sqrt(n_rows), np.array([rough, 0.0, rough - face, 0.0])
     narrow = in_sight and rough - face < 2.0 * reach
@@ -241,7 +245,7 @@ def _at_corner(image: Pixels, coarse: Floats, body: Floats, greys: Greys, view: 
         found[slope], found[slope + 1] = 0.0, _LEAN
     found[_GAIN] = (width / gap_sigma) ** 2
     found[_ROW] = found[_STRIKER_ROW] = np.ceil(highest) + 0.5 * (n_rows - 1)
-    found[_CORNER_ROW] = beside[0]
+    found[_CORNER_ROW], found[_CORNER_SIGMA] = beside[0], _ROUGH
 
 
 @allocating

@@ -10,6 +10,7 @@ from numba import typeof
 
 from wrinklewave.compiling import compiled_beside
 from wrinklewave.imaging.boundary import _find, _View
+from wrinklewave.imaging.corner import follow_to_face
 from wrinklewave.imaging.edges.coarse import coarse_edge
 from wrinklewave.imaging.edges.columns import Columns, find_columns
 from wrinklewave.imaging.edges.detect import RoughEdge, _fine, _fit, _Regularisation, _rough
@@ -55,6 +56,7 @@ def kernel_calls() -> tuple[list[_Call], list[_Call]]:
     beside: list[_Call] = [
         (_fit, (Columns(row, row), row, row, by)),
         (fit_faces, (table, 0, row, row, row, 0.0, 0.0)),
+        (follow_to_face, (image, row, row, row, flags, 0.0, 0.0, 0.0, 0.0, 0.0)),
         (_find, (image, row, greys, 0.0, _View(0.0, 0.0, 0.0, 0, 0.0))),
     ]
     return here, beside

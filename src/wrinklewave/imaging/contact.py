@@ -6,7 +6,7 @@ import numpy as np
 
 from wrinklewave.imaging.arrays import Floats
 
-_GAP = 4.0  # gain in chi squared that a gap brings in every frame: noise alone more in one of forty
+GAP_GAIN = 4.0  # in chi squared, that a gap brings in every frame: noise alone brings more in one of forty
 _CHANGE = 4.0  # and for every time that the faces meet or part
 
 
@@ -21,7 +21,7 @@ def touching_frames(gain: Floats) -> Floats:
             NaN where no striker is in sight.
     """
     known = np.isfinite(gain) | np.isposinf(gain)
-    cost = np.stack([np.where(known, _GAP, 0.0), np.where(known, np.clip(gain, 0.0, 1e6), 0.0)])
+    cost = np.stack([np.where(known, GAP_GAIN, 0.0), np.where(known, np.clip(gain, 0.0, 1e6), 0.0)])
     came_from = np.zeros((2, gain.size), dtype=np.intp)
     total = cost[:, 0].copy() if gain.size else np.zeros(2)
     for frame in range(1, gain.size):

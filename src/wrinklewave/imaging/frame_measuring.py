@@ -8,6 +8,7 @@ import numpy as np
 
 from wrinklewave.imaging.appearance import Appearance
 from wrinklewave.imaging.boundary import StruckEnd, find_struck_end
+from wrinklewave.imaging.corner import with_corner
 from wrinklewave.imaging.edges import RESOLUTION, Edge, EdgeFinder
 from wrinklewave.imaging.edges.locking import PixelLocking
 from wrinklewave.imaging.frames import Image
@@ -61,4 +62,4 @@ class FrameMeasurer:
             hidden = hidden_by_wires(wires, self.wires, image.shape[1])
         edge = self.finder.fine(image, rough, hidden)
         locking = PixelLocking.of(edge.rows, np.where(edge.valid, edge.column_rows - edge.rows, np.nan))
-        return FrameMeasurement(edge, end, wires, locking)
+        return FrameMeasurement(edge, with_corner(end, image, edge, look), wires, locking)
